@@ -1,0 +1,63 @@
+"""Scene and its records: what a stage says, in metres and linear Rec.709, knowing neither USD nor Warp.
+
+Files:
+    checks      how records check and freeze the arrays they hold
+    geometry    Mesh, Instance
+    texture     Texture, TextureInput
+    material    PreviewSurface, ScratchSurface, Material
+    layer       Profile, Layer, Wave, Curves: the scratches on a material
+    light       one record for each light
+    camera      Camera and the window it sees
+    output      RenderProduct, RenderOptions: what the stage asks the renderer for
+    settings    Settings: what the user asks for
+    world       Scene
+"""
+
+from .camera import Camera
+from .geometry import Instance, Mesh
+from .layer import Curves, Layer, Profile, Wave
+from .light import (
+    CylinderLight,
+    DiskLight,
+    DistantLight,
+    DomeLight,
+    Light,
+    MeshLight,
+    RectLight,
+    Shaping,
+    SphereLight,
+)
+from .material import Material, PreviewSurface, ScratchSurface
+from .output import RenderOptions, RenderProduct, RenderVar
+from .settings import Settings
+from .texture import Texture, TextureInput
+from .world import Scene
+
+__all__ = [
+    "Camera",
+    "Curves",
+    "CylinderLight",
+    "DiskLight",
+    "DistantLight",
+    "DomeLight",
+    "Instance",
+    "Layer",
+    "Light",
+    "Material",
+    "Mesh",
+    "MeshLight",
+    "PreviewSurface",
+    "Profile",
+    "RectLight",
+    "RenderOptions",
+    "RenderProduct",
+    "RenderVar",
+    "Scene",
+    "ScratchSurface",
+    "Settings",
+    "Shaping",
+    "SphereLight",
+    "Texture",
+    "TextureInput",
+    "Wave",
+]

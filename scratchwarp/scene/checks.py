@@ -1,0 +1,40 @@
+"""How records check and freeze what they hold: every message names the owner and the offending value."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+
+def freeze(
+    owner: str, name: str, values: ArrayLike, shape: tuple[int | None, ...], dtype: Any = np.float64
+) -> np.ndarray:
+    """Return a read-only array of ``shape`` (None: any length); ValueError on a wrong shape or a NaN."""
+    array = np.array(values, dtype=dtype)
+    fits = array.ndim == len(shape) and all(want in (None, got) for want, got in zip(shape, array.shape, strict=True))
+    if not fits:
+        wanted = "[" + ", ".join("n" if s is None else str(s) for s in shape) + "]"
+        raise ValueError(f"{owner}: {name} has shape {list(array.shape)}, expected {wanted}")
+    if array.dtype.kind == "f" and not np.isfinite(array).all():
+        bad = np.argwhere(~np.isfinite(array))[0]
+        raise ValueError(f"{owner}: {name}{[int(i) for i in bad]} is {array[tuple(bad)]}; every value must be finite")
+    array.setflags(write=False)
+    return array
+
+
+def in_range(owner: str, name: str, value: float, low: float = -np.inf, high: float = np.inf) -> None:
+    """ValueError unless ``low <= value <= high`` (a NaN never is)."""
+    if not low <= value <= high:
+        raise ValueError(f"{owner}: {name} is {value}, expected a value in [{low:g}, {high:g}]")
+
+
+def one_of(owner: str, name: str, value: str, allowed: tuple[str, ...]) -> None:
+    """ValueError unless ``value`` is one of ``allowed``."""
+    if value not in allowed:
+        raise ValueError(f"{owner}: {name} is {value!r}, expected one of {', '.join(allowed)}")
+
+
+def put(record: Any, **values: Any) -> None:
+    """Set fields of a frozen record while it constructs itself."""
+    for name, value in values.items():
+        object.__setattr__(record, name, value)

@@ -1,0 +1,159 @@
+"""Scratch layers: what a material's ScratchLayerAPI instances say."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from .checks import freeze, in_range, one_of, put
+
+SHAPES = ("flat", "vGroove", "rectangle", "trapezoid", "round", "quartic", "gaussian", "sine", "points")
+MODELS = ("auto", "table", "diffraction", "groove", "normalMap")
+DISTRIBUTIONS = ("worley", "random", "linear", "concentric", "spiral", "crosshatch", "curves")
+SPACES = ("surface", "uv")
+MATERIALS = ("inherit", "conductor", "dielectric", "diffuse")
+FRESNELS = ("exact", "schlick", "lazanyi", "lazanyiError", "mirror")
+
+
+@dataclass(frozen=True, eq=False)
+class Profile:
+    """A ScratchProfile prim: normalised, x in widths over [0, 1], z in depths (0 surface, -1 deepest, rims > 0).
+
+    ``parameters`` holds the shape's own attributes (for example ``floorWidth``) by their schema name.
+    """
+
+    path: str
+    shape: str = "vGroove"
+    points: np.ndarray | None = None
+    rim: float = 0.0
+    rim_width: float = 0.25
+    periodic: bool = False
+    parameters: tuple[tuple[str, float], ...] = ()
+
+    def __post_init__(self) -> None:
+        one_of(self.path, "scratch:shape", self.shape, SHAPES)
+        if self.shape == "points" and self.points is None:
+            raise ValueError(f"{self.path}: scratch:points is empty; shape 'points' needs at least two (x, z) points")
+        if self.points is not None:
+            put(self, points=freeze(self.path, "scratch:points", self.points, (None, 2)))
+
+
+@dataclass(frozen=True, eq=False)
+class Layer:
+    """One layer of scratches. Lengths in micrometres (space surface) or fractions of the uv square (space uv).
+
+    Attributes:
+        name: instance name; prim: path of the Material, for messages.
+        model, distribution, space, material, fresnel: tokens of the schema.
+        width, depth, length: mean scratch size; depth is in the unit of width.
+        coverage: area fraction in [0, 1] (statistical distributions); density: scratches a square millimetre
+            (overrides coverage when positive); pitch: distance between regular scratches, in the unit of width.
+        angle, angle_spread: radians, counter-clockwise from the surface's u.
+        curvature: radians of turn for each ``length`` travelled along the scratch.
+        offset: shift of the pattern in cells, shape [2]; center: uv of concentric and spiral patterns, shape [2].
+        metal, eta, k, ior, diffuse_color: of the scratch's own material when ``material`` is not inherit.
+        curves: indices into ``Scene.curves``.
+        profile: the cross-section; None only when the distribution or model needs none.
+        extra: further attributes by schema name, as authored.
+    """
+
+    name: str
+    prim: str
+    profile: Profile
+    order: int = 0
+    model: str = "auto"
+    distribution: str = "worley"
+    space: str = "surface"
+    width: float = 10.0
+    depth: float = 1.0
+    length: float = 1000.0
+    coverage: float = 0.1
+    density: float = 0.0
+    pitch: float = 100.0
+    angle: float = 0.0
+    angle_spread: float = 0.0
+    curvature: float = 0.0
+    offset: tuple[float, float] = (0.0, 0.0)
+    center: tuple[float, float] = (0.5, 0.5)
+    seed: int = 0
+    width_variation: float = 0.0
+    depth_variation: float = 0.0
+    material: str = "inherit"
+    fresnel: str = "exact"
+    metal: str = "custom"
+    eta: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    k: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    ior: float = 1.5
+    diffuse_color: tuple[float, float, float] = (0.18, 0.18, 0.18)
+    curves: tuple[int, ...] = ()
+    extra: tuple[tuple[str, Any], ...] = ()
+
+    def __post_init__(self) -> None:
+        who = self.label
+        one_of(who, "model", self.model, MODELS)
+        one_of(who, "distribution", self.distribution, DISTRIBUTIONS)
+        one_of(who, "space", self.space, SPACES)
+        one_of(who, "material", self.material, MATERIALS)
+        one_of(who, "fresnelModel", self.fresnel, FRESNELS)
+        for name in ("width", "depth", "length", "density", "pitch"):
+            in_range(who, name, getattr(self, name), 0.0, 1e12)
+        in_range(who, "coverage", self.coverage, 0.0, 1.0)
+        in_range(who, "widthVariation", self.width_variation, 0.0, 1.0)
+        in_range(who, "depthVariation", self.depth_variation, 0.0, 1.0)
+        for name in ("angle", "angle_spread", "curvature"):
+            in_range(who, name, getattr(self, name), -1e6, 1e6)
+
+    @property
+    def label(self) -> str:
+        """The Material's path and the layer's name, as messages show it."""
+        return f"{self.prim} layer {self.name!r}"
+
+
+@dataclass(frozen=True, eq=False)
+class Wave:
+    """ScratchWaveAPI: coherence radius [um], wavelengths [nm], tabulated index of refraction."""
+
+    coherence_radius: float = 60.0
+    wavelength_range: tuple[float, float] = (380.0, 780.0)
+    samples: int = 16
+    ior: np.ndarray | None = None  # [n, 3]: wavelength [nm], eta, k
+
+    def __post_init__(self) -> None:
+        in_range("ScratchWaveAPI", "coherenceRadius", self.coherence_radius, 1e-6, 1e9)
+        if self.ior is not None:
+            put(self, ior=freeze("ScratchWaveAPI", "ior", self.ior, (None, 3)))
+
+
+@dataclass(frozen=True, eq=False)
+class Curves:
+    """Explicit scratches: polylines of one BasisCurves prim.
+
+    Attributes:
+        path: prim path.
+        points: world metres relative to ``Scene.origin`` (space object) or (u, v, 0) (space uv), shape [n, 3].
+        counts: points of each curve, shape [c], int32.
+        widths: full width [um], shape [n]; depths: [um], shape [n].
+        space: object or uv.
+    """
+
+    path: str
+    points: np.ndarray
+    counts: np.ndarray
+    widths: np.ndarray
+    depths: np.ndarray
+    space: str = "object"
+
+    def __post_init__(self) -> None:
+        one_of(self.path, "scratch:curves:space", self.space, ("object", "uv"))
+        points = freeze(self.path, "points", self.points, (None, 3))
+        counts = freeze(self.path, "curveVertexCounts", self.counts, (None,), np.int32)
+        if int(counts.sum()) != len(points):
+            raise ValueError(f"{self.path}: curveVertexCounts add up to {int(counts.sum())}, points has {len(points)}")
+        widths = freeze(self.path, "widths", self.widths, (len(points),))
+        put(
+            self,
+            points=points,
+            counts=counts,
+            widths=widths,
+            depths=freeze(self.path, "primvars:scratch:depth", self.depths, (len(points),)),
+        )

@@ -1,0 +1,71 @@
+"""Settings: what the user asks for, on top of what the stage says."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+
+from .checks import in_range, one_of, put
+
+QUALITIES = ("draft", "preview", "final", "reference")
+INTEGRATORS = ("direct", "path")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings:
+    """How to render. None leaves the choice to the stage, then to the default in brackets.
+
+    Attributes:
+        width, height: image size in pixels [stage resolution, else 640 wide]; one of them follows from the aspect of
+            the stage's resolution or the camera's aperture.
+        spp: samples a pixel [16]; seed: of every random choice [0].
+        threads: worker threads [all cores]; the image does not depend on it.
+        quality: draft, preview, final or reference; max_error: relative error to stop at.
+        integrator: direct or path; max_depth: surfaces that a path may meet.
+        crop: (xmin, xmax, ymin, ymax) in [0, 1], from the top left; only that part is rendered.
+        tile: edge of a square tile in pixels.
+        filter: box, gaussian or blackmanHarris [blackmanHarris]; filter_width: full width in pixels.
+        effects: name -> True or False forces one effect of the plan on or off.
+    """
+
+    width: int | None = None
+    height: int | None = None
+    spp: int | None = None
+    seed: int | None = None
+    threads: int | None = None
+    quality: str | None = None
+    max_error: float | None = None
+    integrator: str | None = None
+    max_depth: int | None = None
+    crop: tuple[float, float, float, float] | None = None
+    tile: int = 32
+    filter: str | None = None
+    filter_width: float | None = None
+    effects: Mapping[str, bool] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        limits = {"width": 65536, "height": 65536, "spp": 1 << 20, "threads": 4096, "max_depth": 1024, "tile": 4096}
+        for name, high in limits.items():
+            value = getattr(self, name)
+            if value is not None:
+                if not isinstance(value, int) or isinstance(value, bool):
+                    raise ValueError(f"Settings: {name} is {value!r}, expected a whole number")
+                in_range("Settings", name, value, 1, high)
+        if self.seed is not None:
+            in_range("Settings", "seed", self.seed, 0, 2**32 - 1)
+        if self.quality is not None:
+            one_of("Settings", "quality", self.quality, QUALITIES)
+        if self.integrator is not None:
+            one_of("Settings", "integrator", self.integrator, INTEGRATORS)
+        if self.filter is not None:
+            one_of("Settings", "filter", self.filter, ("box", "gaussian", "blackmanHarris"))
+        if self.filter_width is not None:
+            in_range("Settings", "filter_width", self.filter_width, 0.0, 64.0)
+        if self.max_error is not None:
+            in_range("Settings", "max_error", self.max_error, 1e-9, 1e9)
+        if self.crop is not None:
+            x0, x1, y0, y1 = self.crop
+            if not (0 <= x0 < x1 <= 1 and 0 <= y0 < y1 <= 1):
+                raise ValueError(
+                    f"Settings: crop is {self.crop}, expected (xmin, xmax, ymin, ymax) with 0 <= min < max <= 1"
+                )
+        put(self, effects=MappingProxyType(dict(self.effects)))
