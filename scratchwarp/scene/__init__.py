@@ -11,9 +11,11 @@ Files:
     output      RenderProduct, RenderOptions: what the stage asks the renderer for
     settings    Settings: what the user asks for
     world       Scene
+    errors      StageError: the input is at fault
 """
 
 from .camera import Camera
+from .errors import StageError
 from .geometry import Instance, Mesh
 from .layer import Curves, Layer, Profile, Wave
 from .light import (
@@ -57,6 +59,7 @@ __all__ = [
     "Settings",
     "Shaping",
     "SphereLight",
+    "StageError",
     "Texture",
     "TextureInput",
     "Wave",
