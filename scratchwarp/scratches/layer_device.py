@@ -1,0 +1,56 @@
+"""What every distribution takes and returns.
+
+Pattern space: the plane in which a layer is laid out, (u, v) of the surface in micrometres (space surface) or in
+fractions of the uv square (space uv). Positions there are float64: a metre holds 10^6 micrometres and float32 would
+round a scratch away.
+"""
+
+import warp as wp
+
+wp.set_module_options({"enable_backward": False})
+
+
+@wp.struct
+class LayerData:
+    """One sublayer. Lengths in pattern units; see ``expand.pack`` for where each value comes from."""
+
+    kind: int  # position in scratches.KINDS
+    uv_space: int  # 1: pattern space is the uv square
+    cos_a: float  # direction of the scratches in pattern space
+    sin_a: float
+    inv_length: wp.float64  # cells a pattern unit along the scratch
+    inv_width: wp.float64  # cells a pattern unit across
+    radius: float  # threshold d of Eq. 7, in cells
+    width_variation: float  # relative, uniform in 1 -+ this
+    offset: wp.vec2d  # cells
+    seed: wp.uint32
+    width: wp.float64  # regular patterns: scratch width and distance
+    pitch: wp.float64
+    center: wp.vec2d  # uv
+    bend: wp.float64  # amplitude of the sideways wave that curves the scratches
+    bend_number: wp.float64  # its wave number, radians a pattern unit
+    mean: float  # coverage of a large footprint
+    table: int  # profile table, -1 for a diffuse scratch
+    keeps_diffuse: int  # 1: the base's diffuse term shines through the scratch
+    diffuse: wp.vec3  # albedo of a diffuse scratch
+    weight: float  # estimated reflectance, for choosing among lobes
+    first: int  # curves: first segment
+    count: int  # curves: number of segments
+    bvh: wp.uint64  # curves: hierarchy over the segments
+
+
+@wp.struct
+class LayerHit:
+    """Covered fraction of the footprint, and the unit direction of the scratches there, in pattern space."""
+
+    alpha: float
+    direction: wp.vec2
+
+
+@wp.func
+def longer(a: wp.vec2, b: wp.vec2) -> wp.vec2:
+    """The longer of two vectors."""
+    result = a
+    if wp.dot(b, b) > wp.dot(a, a):
+        result = b
+    return result

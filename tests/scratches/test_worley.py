@@ -1,0 +1,116 @@
+"""Worley coverage: the mean formula, the device function, and a brute force that shares no code with either."""
+
+import numpy as np
+import pytest
+import warp as wp
+
+from scratchwarp.scratches import worley
+from scratchwarp.scratches.worley_device import chord_coverage, count_bits, interval_bits
+
+wp.set_module_options({"enable_backward": False})
+
+
+@wp.kernel
+def chords(
+    p: wp.array(dtype=wp.vec2),
+    cell: wp.array(dtype=wp.vec2i),
+    a: wp.vec2,
+    radius: float,
+    variation: float,
+    out: wp.array(dtype=float),
+):
+    i = wp.tid()
+    phase = wp.randf(wp.rand_init(7, i))
+    out[i] = chord_coverage(p[i], a, cell[i][0], cell[i][1], radius, variation, wp.uint32(77), phase)
+
+
+@wp.kernel
+def bits(t0: wp.array(dtype=float), t1: wp.array(dtype=float), phase: float, out: wp.array(dtype=int)):
+    i = wp.tid()
+    out[i] = count_bits(interval_bits(t0[i], t1[i], phase))
+
+
+def run_chords(n, a, radius, variation=0.0, seed=0):
+    rng = np.random.default_rng(seed)
+    p = wp.array(rng.random((n, 2)).astype(np.float32), dtype=wp.vec2, device="cpu")
+    cells = wp.array(rng.integers(-100000, 100000, (n, 2)).astype(np.int32), dtype=wp.vec2i, device="cpu")
+    out = wp.zeros(n, dtype=float, device="cpu")
+    wp.launch(chords, dim=n, inputs=[p, cells, wp.vec2(*a), radius, variation, out], device="cpu")
+    return out.numpy()
+
+
+@pytest.mark.parametrize("radius", [0.05, 0.3, 0.6, 1.0])
+def test_mean_matches_brute_force(radius):
+    """Jittered points thrown with NumPy, nearest distance by exhaustion: 5 sigma of the binomial."""
+    rng = np.random.default_rng(1)
+    n = 40000
+    x = rng.random((n, 2))
+    grid = np.array([(i, j) for i in range(-2, 3) for j in range(-2, 3)])
+    points = grid + rng.random((n, 25, 2))
+    hit = (((points - x[:, None]) ** 2).sum(-1).min(1) <= radius**2).mean()
+    expected = worley.coverage(radius)
+    assert abs(hit - expected) < 5 * np.sqrt(expected * (1 - expected) / n) + 1e-4
+
+
+@pytest.mark.parametrize("a", [(0.0, 0.0), (0.001, 0.7), (5.0, 0.2), (3.0, -11.0)])
+@pytest.mark.parametrize("variation", [0.0, 0.5])
+def test_device_mean_is_preserved_for_every_footprint(a, variation):
+    """One sample's variance is at most a (1 - a), so n samples lie within 5 sqrt(a (1 - a) / n)."""
+    n = 40000
+    expected = worley.coverage(0.35, variation)
+    got = run_chords(n, a, 0.35, variation).mean()
+    assert abs(got - expected) < 5 * np.sqrt(expected * (1 - expected) / n) + 1e-4
+
+
+def test_chord_equals_the_mean_of_points_along_it():
+    """The interval bits of a chord are the 64 point samples on it: compare with point footprints, same phase 0."""
+    n = 200
+    rng = np.random.default_rng(3)
+    p = rng.random((n, 2)).astype(np.float32)
+    cells = rng.integers(-1000, 1000, (n, 2)).astype(np.int32)
+    a = np.array([0.8, 2.5], np.float32)
+
+    @wp.kernel(module="unique")
+    def at_zero_phase(
+        p: wp.array(dtype=wp.vec2), cell: wp.array(dtype=wp.vec2i), a: wp.vec2, out: wp.array(dtype=float)
+    ):
+        i = wp.tid()
+        out[i] = chord_coverage(p[i], a, cell[i][0], cell[i][1], 0.35, 0.0, wp.uint32(77), 0.5)
+
+    def launch(points, cell, axis):
+        out = wp.zeros(len(points), dtype=float, device="cpu")
+        inputs = [
+            wp.array(points, dtype=wp.vec2, device="cpu"),
+            wp.array(cell, dtype=wp.vec2i, device="cpu"),
+            wp.vec2(*axis),
+            out,
+        ]
+        wp.launch(at_zero_phase, dim=len(points), inputs=inputs, device="cpu")
+        return out.numpy()
+
+    chord = launch(p, cells, a)
+    t = (np.arange(64) + 0.5) / 64 - 0.5
+    every = (p[:, None] + t[:, None].astype(np.float32) * a).reshape(-1, 2)
+    points = launch(every, np.repeat(cells, 64, axis=0), (0.0, 0.0)).reshape(n, 64).mean(1)
+    # rounding moves an interval's end past at most one sample of a few ends
+    assert np.abs(chord - points).max() <= 2 / 64
+    assert np.abs(chord - points).mean() < 1e-3
+
+
+def test_bits_count_the_samples_of_an_interval():
+    t0 = np.array([0.0, 0.1, -3.0, 0.5, 0.9], np.float32)
+    t1 = np.array([1.0, 0.2, 5.0, 0.4, 0.95], np.float32)
+    out = wp.zeros(5, dtype=int, device="cpu")
+    wp.launch(
+        bits,
+        dim=5,
+        inputs=[wp.array(t0, dtype=float, device="cpu"), wp.array(t1, dtype=float, device="cpu"), 0.5, out],
+        device="cpu",
+    )
+    at = (np.arange(64) + 0.5) / 64
+    assert out.numpy().tolist() == [int(((at >= a) & (at <= b)).sum()) for a, b in zip(t0, t1, strict=True)]
+
+
+@pytest.mark.parametrize("wanted", [0.001, 0.1, 0.5, 0.9, 0.999])
+def test_threshold_inverts_coverage(wanted):
+    assert worley.coverage(worley.threshold(wanted)) == pytest.approx(wanted, abs=1e-6)
