@@ -1,1 +1,29 @@
+"""Film to EXR, PNG and NPZ, and image files to textures; the only importer of OpenImageIO.
 
+Files:
+    whole       a file that appears whole or not at all
+    layers      which channels and precision a layer of an image has
+    exr         layers to and from multi-layer EXR
+    npz         layers to and from NumPy archives
+    view        scene-linear pixels through a named OpenColorIO view
+    png         a film as a picture to look at
+    texture     an image file as a texture: linear Rec.709
+    writer      write(film, path) chooses by suffix
+"""
+
+from .texture import read_texture
+from .view import LINEAR, SRGB, View, color_view
+from .writer import SUFFIXES, check_writable, read_layers, write, write_layers
+
+__all__ = [
+    "LINEAR",
+    "SRGB",
+    "SUFFIXES",
+    "View",
+    "check_writable",
+    "color_view",
+    "read_layers",
+    "read_texture",
+    "write",
+    "write_layers",
+]
