@@ -1,9 +1,9 @@
 """Light at one interaction: Fresnel reflectance, metals, spectra, microfacets, sampling.
 
-Files (host, NumPy): ``fresnel`` the reflectors and their reference formulas; ``metals`` and ``metal_tables`` measured
-n, k;
-``spectra`` and ``cie_tables`` colorimetry. Files (device, Warp): ``fresnel_device``, ``hash_device``, ``sobol_device``,
-``sampling_device``, ``microfacets_device``. Importing this package does not import Warp.
+Host, NumPy: ``fresnel`` (the reflectors and their reference formulas), ``metals`` and ``metal_tables`` (measured n, k),
+``spectra`` and ``cie_tables`` (colorimetry). Device, Warp: ``frames_device``, ``fresnel_device``, ``microfacets_device``,
+``sampling_device`` (front door to ``hash_device``, ``sobol_device`` and ``filters_device``). Importing this package does
+not import Warp.
 """
 
 import importlib
