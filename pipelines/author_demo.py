@@ -1,0 +1,64 @@
+"""Write the demo stages: ball.usda, kettle.usda, panel.usda and plain.usda.
+
+They are the stages of the README's picture, of the tests and of the benchmarks. Nothing in them is a binary file.
+"""
+
+import argparse
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from .demo_ball import ball
+from .demo_kettle import kettle
+from .demo_panel import panel
+from .demo_plain import plain
+
+__all__ = ["STAGES", "author", "ball", "kettle", "main", "panel", "plain"]
+
+STAGES: dict[str, Callable[[Path, float], Path]] = {"ball": ball, "kettle": kettle, "panel": panel, "plain": plain}
+
+
+def author(out_dir: Path | str, detail: float = 1.0, names: Sequence[str] = tuple(STAGES)) -> list[Path]:
+    """Write ``names`` into ``out_dir`` and return their paths; files of an earlier run are replaced.
+
+    Args:
+        out_dir: folder, made when it is not there.
+        detail: scales the number of faces and curve points; 0.1 makes small stages for tests.
+        names: some of ball, kettle, panel, plain.
+
+    Raises:
+        ValueError: an unknown name, or a detail that is not positive.
+        OSError: the folder cannot be written.
+    """
+    unknown = [name for name in names if name not in STAGES]
+    if unknown:
+        raise ValueError(f"names has {unknown[0]!r}, expected some of {', '.join(STAGES)}")
+    if not 0 < detail <= 16:
+        raise ValueError(f"detail is {detail}, expected a value in (0, 16]")
+    return [STAGES[name](Path(out_dir) / f"{name}.usda", detail) for name in names]
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Command line of this script."""
+    parser = argparse.ArgumentParser(
+        prog="python -m scratchwarp.pipelines.author_demo",
+        description=(__doc__ or "").strip(),
+        epilog="example: python -m scratchwarp.pipelines.author_demo stages --only ball --detail 2",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("out_dir", type=Path, help="folder to write into; made when it is not there")
+    parser.add_argument("--detail", type=float, default=1.0, help="scales the number of faces [1]")
+    parser.add_argument("--only", nargs="+", choices=tuple(STAGES), default=tuple(STAGES), help="write only these")
+    options = parser.parse_args(argv)
+    try:
+        paths = author(options.out_dir, options.detail, options.only)
+    except (ValueError, OSError) as error:
+        print(f"author_demo: {error}", file=sys.stderr)
+        return 1
+    for path in paths:
+        print(path)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

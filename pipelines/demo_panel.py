@@ -1,0 +1,77 @@
+"""The panel: a painted car door with wash marks in its clear coat and deep scratches down to the metal.
+
+Lengths in metres, +Z up, micro-structure in micrometres.
+"""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pxr import Sdf, Usd
+
+from . import demo_shapes as shapes
+from . import demo_usd as usd
+
+UP = (0.0, 0.0, 1.0)
+WIDTH, HEIGHT = 0.36, 0.27
+
+
+def panel(path: Path | str, detail: float = 1.0) -> Path:
+    """Write the stage; ``detail`` scales the number of faces and scratches."""
+    stage = usd.new_stage(meters_per_unit=1.0, up="Z")
+    coat: dict[str, Any] = {"clearcoat": 1.0, "clearcoatRoughness": 0.03, "ior": 1.5}
+    paint = usd.material(stage, "paint", diffuseColor=(0.32, 0.012, 0.016), roughness=0.32, **coat)
+    shallow = usd.profile(paint, "shallow", shape="round")
+    torn = usd.profile(paint, "torn", shape="trapezoid", floorWidth=0.3, rim=0.25)
+    usd.layer(
+        paint, "wash", shallow, order=1, distribution="worley", width=22.0, depth=1.5, length=9000.0, coverage=0.06,
+        patterns=12, angleSpread=360.0, curvature=40.0, seed=11,
+    )
+    usd.layer(
+        paint, "twigs", shallow, order=2, distribution="random", width=70.0, depth=6.0, length=45000.0, coverage=0.008,
+        angle=8.0, angleSpread=30.0, curvature=10.0, widthVariation=0.5, depthVariation=0.5, seed=4,
+    )
+    usd.layer(
+        paint, "gravel", torn, order=3, distribution="random", width=140.0, depth=60.0, length=7000.0, coverage=0.0025,
+        angle=160.0, angleSpread=50.0, widthVariation=0.5, material="conductor", metal="iron", seed=6,
+    )
+    usd.layer(
+        paint, "key", torn, key(stage, detail), order=4, distribution="curves", width=260.0, depth=90.0,
+        material="conductor", metal="iron",
+    )
+    columns, rows = max(8, int(120 * detail)), max(6, int(90 * detail))
+    usd.mesh(stage, "door", shapes.sheet(door, columns, rows), paint)
+    rubber = usd.material(stage, "rubber", diffuseColor=(0.05, 0.05, 0.052), roughness=0.7)
+    floor = shapes.sheet(lambda u, v: np.stack([4 * u - 2, 4 * v - 2, 0 * u], axis=-1), 1, 1)
+    usd.mesh(stage, "floor", floor, rubber)
+    usd.rect_light(stage, "tube", (-0.25, -0.55, 0.85), (0, 0, 0.12), (1.1, 0.16), 11.0, (1.0, 0.97, 0.92), UP)
+    usd.rect_light(stage, "side", (0.9, -0.3, 0.35), (0, 0, 0.12), (0.2, 0.6), 5.0, (0.85, 0.92, 1.0), UP)
+    usd.sphere_light(stage, "lamp", (0.16, -0.95, 0.52), 0.011, 3000.0)
+    usd.sphere_light(stage, "spark", (-0.3, -1.0, 0.34), 0.008, 3000.0, (1.0, 0.88, 0.75))
+    usd.distant_light(stage, "sun", (0.3, 1.0, -0.9), 0.53, 0.9, up=UP)
+    usd.dome_light(stage, "sky", 0.16, (0.7, 0.82, 1.0))
+    usd.camera(stage, (0.11, -0.82, 0.27), (0.0, 0.0, 0.125), UP)
+    usd.settings(stage)
+    return usd.save(stage, path, "A scratched painted panel: marks in the clear coat, and bare metal.")
+
+
+def door(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Positions on the door, seen from -Y: bulged, with a crease along it and its edges bent back."""
+    x, y = 2 * u - 1, 2 * v - 1
+    bulge = 0.022 * (1 - x**2) + 0.03 * (1 - (y + 0.1) ** 2)
+    crease = 0.007 * np.tanh((v - 0.62 - 0.06 * u) * 45)
+    bent = 0.02 * (np.clip(np.abs(x) - 0.93, 0, 1) ** 2 + np.clip(np.abs(y) - 0.93, 0, 1) ** 2) * 100
+    return np.stack([WIDTH / 2 * x, bent - bulge + crease + 0.03 * v, HEIGHT * v + 0.005], axis=-1)
+
+
+def key(stage: Usd.Stage, detail: float) -> Sdf.Path:
+    """What somebody did with a key, in uv."""
+    n = max(12, int(90 * detail))
+    rng = np.random.default_rng(7)
+    wave = shapes.smooth([(0.1, 0.52), (0.28, 0.45), (0.5, 0.5), (0.7, 0.42), (0.9, 0.47)], n)
+    loop = np.linspace(0, 2.2 * np.pi, n)[:, None]
+    curl = np.array([0.33, 0.26]) + (0.05 - 0.004 * loop) * np.concatenate([np.cos(loop), 1.2 * np.sin(loop)], axis=1)
+    strokes = [wave, wave[: n // 2] + (0.02, -0.03), curl]
+    strokes = [stroke + 0.0006 * rng.standard_normal(stroke.shape) for stroke in strokes]
+    lines = [np.concatenate([stroke, np.zeros((len(stroke), 1))], axis=1) for stroke in strokes]
+    return usd.curves(stage, "key", lines, width=260.0, depth=90.0, space="uv")
