@@ -1,9 +1,10 @@
 """Light at one interaction: Fresnel reflectance, metals, spectra, microfacets, sampling.
 
 Host, NumPy: ``fresnel`` (the reflectors and their reference formulas), ``metals`` and ``metal_tables`` (measured n, k),
-``spectra`` and ``cie_tables`` (colorimetry). Device, Warp: ``frames_device``, ``fresnel_device``, ``microfacets_device``,
-``sampling_device`` (front door to ``hash_device``, ``sobol_device`` and ``filters_device``). Importing this package does
-not import Warp.
+``spectra`` and ``cie_tables`` (colorimetry). Device, Warp: ``frames_device``, ``fresnel_device``,
+``microfacets_device``,
+``sampling_device`` (front door to ``hash_device``, ``sobol_device`` and ``filters_device``). Importing this package
+does not import Warp.
 """
 
 import importlib

@@ -43,7 +43,7 @@ def test_frames_are_right_handed_and_keep_the_tangent():
     np.testing.assert_allclose(back, t, atol=2e-5)
     flat = t - np.sum(t * n, axis=1, keepdims=True) * n
     clear = np.linalg.norm(flat, axis=1) > 1e-2
-    np.testing.assert_allclose(x[clear], (flat / np.linalg.norm(flat, axis=1, keepdims=True))[clear], atol=1e-4)
+    np.testing.assert_allclose(x[clear], flat[clear] / np.linalg.norm(flat[clear], axis=1, keepdims=True), atol=1e-4)
 
 
 def test_scratch_angles_are_those_of_the_convention():
