@@ -4,7 +4,7 @@ Files:
     schema.usda                the source: classes, attributes, units, ranges, documentation
     generate.py                makes the generated files from it; ``--check`` says whether they are stale
     plugInfo.json              leads USD to scratchSchema/resources
-    scratchSchema/resources/   plugInfo.json, generatedSchema.usda, scratchSchema/schema.usda (generated), shaderDefs.usda
+    scratchSchema/resources/   the generated files, and shaderDefs.usda, the shading node ScratchSurface
 
 Importing this module does not import pxr, so that a host program can ask for the path before its own pxr loads::
 
@@ -70,8 +70,8 @@ def register() -> None:
     ]
     if missing:
         raise RuntimeError(
-            f"too late to register scratchwarp's USD schemas ({', '.join(missing)}): a stage was opened in this process "
-            "before, and USD reads schemas only once. Import scratchwarp.stage (or call "
+            f"too late to register scratchwarp's USD schemas ({', '.join(missing)}): a stage was opened in this "
+            "process before, and USD reads schemas only once. Import scratchwarp.stage (or call "
             "scratchwarp.usd_schemas.register()) before the first stage is opened, or start the process with "
             f"PXR_PLUGINPATH_NAME={plugin_path()}"
         )

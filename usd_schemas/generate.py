@@ -22,7 +22,7 @@ LIBRARY = "scratchSchema"
 UNITS = {
     "appliesTo": ["attributes"],
     "displayGroup": "Scratch",
-    "documentation": "Absolute unit of a scratch attribute: micrometer, nanometer, degree, 1/millimeter^2, pixel, none.",
+    "documentation": "Absolute unit of a scratch attribute, for example micrometer or degree.",
     "type": "token",
 }
 

@@ -1,0 +1,99 @@
+"""Is a USD file fit to be rendered? Our rules and OpenUSD's own, as one list of findings.
+
+USD itself checks the type of a value and nothing else: a misspelt attribute, a token nobody knows or a negative width
+is accepted without a word. The rules are in the modules validation_*, one theme each; validation_framework registers
+them with OpenUSD, so that other programs which run its validators run them as well.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from pxr import Sdf, Tf, Usd, UsdValidation
+
+from scratchwarp import usd_schemas
+from scratchwarp.scene import StageError
+
+from .validation_framework import KEYWORD, register_rules
+
+SEVERITY = {"Error": "error", "Warn": "warning"}
+
+
+@dataclass(frozen=True, order=True)
+class Finding:
+    """One problem of a stage.
+
+    Attributes:
+        severity: "error" (would be refused or rendered wrongly) or "warning".
+        rule: name of the validator, for example ``scratchwarp:ScratchValues``.
+        path: path of the prim, "/" when the problem is one of the whole file.
+        message: what is wrong, with the value, and what to do; starts with the path of the prim.
+    """
+
+    severity: str
+    rule: str
+    path: str
+    message: str
+
+    def __str__(self) -> str:
+        return f"{self.severity}: {self.message} [{self.rule}]"
+
+
+def validate(path: str | Path, core: bool = True) -> list[Finding]:
+    """Run the rules of scratchwarp, and with ``core`` every validator of OpenUSD, on a file; errors come first.
+
+    Raises:
+        StageError: the file is missing or is no USD.
+        RuntimeError: a stage was opened in this process before the schemas were registered.
+    """
+    usd_schemas.register()
+    return validate_stage(open_stage(path), core)
+
+
+def validate_stage(stage: Usd.Stage, core: bool = True) -> list[Finding]:
+    """The same for a stage that is already open."""
+    usd_schemas.register_shaders()
+    register_rules()
+    registry = UsdValidation.ValidationRegistry()
+    if core:
+        context = UsdValidation.ValidationContext(registry.GetOrLoadAllValidators())
+    else:
+        names = [entry.name for entry in registry.GetValidatorMetadataForKeyword(KEYWORD)]
+        context = UsdValidation.ValidationContext(registry.GetOrLoadValidatorsByName(names))
+    findings = {finding_of(error) for error in context.Validate(stage) if not error.HasNoError()}
+    return sorted(findings)
+
+
+def open_stage(path: str | Path) -> Usd.Stage:
+    """Open a USD file; StageError naming it when it is missing or cannot be read."""
+    if not Path(path).is_file():
+        raise StageError(f"{path}: no such file; give the path of a .usd, .usda, .usdc or .usdz file")
+    try:
+        return Usd.Stage.Open(str(path))
+    except Tf.ErrorException as error:
+        reason = str(error).strip().splitlines()[-1].strip()
+        raise StageError(f"{path}: not a USD file that can be read ({reason})") from error
+
+
+def finding_of(error: UsdValidation.ValidationError) -> Finding:
+    """The framework's error as a Finding; the prim is that of its first site."""
+    validator = error.GetValidator()
+    rule = validator.GetMetadata().name if validator else error.GetName()
+    sites = error.GetSites()
+    where = site_path(sites[0]) if sites else Sdf.Path.absoluteRootPath
+    message = " ".join(error.GetMessage().split())
+    if str(where) not in message:
+        message = f"{where}: {message}"
+    return Finding(SEVERITY.get(error.GetType().displayName, "warning"), rule, str(where), message)
+
+
+def site_path(site: UsdValidation.ValidationErrorSite) -> Sdf.Path:
+    """Path of the prim that a site of an error points to; "/" for a whole layer."""
+    if site.IsProperty():
+        return site.GetProperty().GetPrim().GetPath()
+    if site.IsPrim():
+        return site.GetPrim().GetPath()
+    if site.IsValidSpecInLayer() and site.GetPropertySpec():
+        return site.GetPropertySpec().path.GetPrimPath()
+    if site.IsValidSpecInLayer() and site.GetPrimSpec():
+        return site.GetPrimSpec().path
+    return Sdf.Path.absoluteRootPath
