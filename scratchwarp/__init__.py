@@ -9,6 +9,8 @@ Public names load on first use, so that ``import scratchwarp`` imports neither U
 """
 
 import importlib
+import sys
+import types
 
 __version__ = "0.1.0"
 
@@ -44,3 +46,15 @@ def __getattr__(name: str):
 
 def __dir__() -> list[str]:
     return sorted({*globals(), *_PUBLIC})
+
+
+class _Package(types.ModuleType):
+    """Keeps ``scratchwarp.render`` the function when Python, importing the room of that name, would make it the room."""
+
+    def __setattr__(self, name: str, value: object) -> None:
+        if isinstance(value, types.ModuleType) and _PUBLIC.get(name, (None, None))[1] is not None:
+            return
+        super().__setattr__(name, value)
+
+
+sys.modules[__name__].__class__ = _Package

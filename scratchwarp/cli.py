@@ -1,0 +1,247 @@
+"""The command line: one thin function a sub-command.
+
+Exit status: 0 done, 1 the input is at fault (one message), 2 wrong usage, 130 interrupted with the checkpoint kept.
+"""
+
+import argparse
+import json
+import os
+import sys
+import traceback
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from . import arguments
+from .arguments import UsageError
+
+if TYPE_CHECKING:
+    from .scene import Scene
+
+Command = argparse.Namespace
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one sub-command and return its exit status; argparse itself leaves with 2 on wrong usage."""
+    args = _parser().parse_args(argv)
+    try:
+        status = args.run(args)
+        sys.stdout.flush()
+        return status
+    except KeyboardInterrupt:
+        kept = getattr(args, "checkpoint", None)
+        _say(f"interrupted; {f'{kept} is kept, add --resume to go on' if kept else 'no file was left half written'}")
+        return 130
+    except BrokenPipeError:  # the reader, such as head, has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except Exception as error:
+        if os.environ.get("SCRATCHWARP_DEBUG"):
+            traceback.print_exc()
+        if isinstance(error, UsageError):
+            _say(f"{args.command}: error: {error}; see scratchwarp {args.command} --help")
+            return 2
+        expected = isinstance(error, ValueError | OSError | ImportError)
+        hint = "" if expected else f" [{type(error).__name__}; a fault of scratchwarp: SCRATCHWARP_DEBUG=1 shows where]"
+        _say(f"error: {error}{hint}")
+        return 1
+
+
+def render(args: Command) -> int:
+    """STAGE to one image, or to one for each frame."""
+    import scratchwarp as sw
+
+    from . import image
+    from .render.progress import bar
+
+    settings, view = arguments.settings(args), _view(args)
+    jobs = _jobs(args)
+    for _, out, checkpoint in jobs:
+        image.check_writable(out)
+        if checkpoint and not Path(checkpoint).parent.is_dir():
+            raise FileNotFoundError(f"{checkpoint}: cannot be written, there is no folder {Path(checkpoint).parent}")
+    told: set[str] = set()
+    for frame, out, checkpoint in jobs:
+        scene = sw.read(args.stage, frame=frame, **arguments.reading(args))
+        _warn(scene, told, args.quiet)
+        plan = sw.make_plan(scene, settings)
+        with bar(args.quiet, Path(out).name) as progress:
+            film = sw.render(scene, plan, progress=progress, checkpoint=checkpoint, resume=args.resume)
+        sw.write(film, out, aovs=arguments.listed(",".join(args.aov)) or None, view=view)
+        if args.json:
+            row = {"image": out, "frame": frame, "warnings": scene.warnings, "stats": dict(film.stats)}
+            print(json.dumps(row, default=_plain), flush=True)
+        elif not args.quiet:
+            print(out, flush=True)
+    return 0
+
+
+def explain(args: Command) -> int:
+    """Print which effects STAGE calls for, and why."""
+    import scratchwarp as sw
+
+    scene = sw.read(args.stage, **arguments.reading(args))
+    _warn(scene, set(), args.quiet)
+    plan = sw.make_plan(scene, arguments.settings(args))
+    if args.json:
+        effects = {n: {"enabled": e.enabled, "reason": e.reason, "prims": e.prims} for n, e in plan.effects.items()}
+        print(json.dumps({"stage": args.stage, "warnings": scene.warnings, "effects": effects}, default=_plain))
+    else:
+        print(plan.explain())
+    return 0
+
+
+def validate(args: Command) -> int:
+    """Check STAGE against the scratch schemas; status 1 when it has errors (with --strict: or warnings)."""
+    from .stage.validation import validate as check
+
+    findings = check(args.stage)
+    if args.json:
+        rows = [{"severity": f.severity, "rule": f.rule, "prim": f.path, "message": f.message} for f in findings]
+        print(json.dumps(rows, indent=1))
+    else:
+        for finding in findings:
+            print(finding)
+        if not findings and not args.quiet:
+            print(f"{args.stage}: nothing to find fault with")
+    counted = ("error", "warning") if args.strict else ("error",)
+    return 1 if any(f.severity in counted for f in findings) else 0
+
+
+def demo(args: Command) -> int:
+    """Author the demo stages in OUT_DIR and render each to EXR and PNG."""
+    import scratchwarp as sw
+
+    from .pipelines.author_demo import author
+    from .render.progress import bar
+
+    settings = sw.Settings(width=args.imageWidth, spp=args.spp, threads=args.threads)
+    Path(args.out).mkdir(parents=True, exist_ok=True)
+    told: set[str] = set()
+    for stage in author(args.out):
+        stage = Path(stage)
+        scene = sw.read(stage)
+        _warn(scene, told, args.quiet)
+        with bar(args.quiet, stage.stem) as progress:
+            film = sw.render(scene, sw.make_plan(scene, settings), progress=progress)
+        for out in (stage.with_suffix(".exr"), stage.with_suffix(".png")):
+            sw.write(film, out)
+            if not args.quiet:
+                print(out, flush=True)
+    return 0
+
+
+def _jobs(args: Command) -> list[tuple[float | None, str, str | None]]:
+    """(frame, output, checkpoint) of each image asked for."""
+    from .frames import is_numbered, numbered, parse_frames
+    from .image import SUFFIXES
+
+    if args.resume and not args.checkpoint:
+        raise UsageError("--resume needs --checkpoint FILE")
+    if Path(args.out).suffix.lower() not in SUFFIXES:
+        raise UsageError(f"OUT {args.out!r} ends in none of {', '.join(SUFFIXES)}")
+    try:
+        frames: list[float | None] = [*parse_frames(args.frames)] if args.frames else [None]
+        for name, what in ((args.out, "OUT"), (args.checkpoint, "--checkpoint")):
+            if name and len(frames) > 1 and not is_numbered(name):
+                raise UsageError(f"{what} {name!r} is one file for {len(frames)} frames; write ### in it")
+        return [(f, numbered(args.out, f), args.checkpoint and numbered(args.checkpoint, f)) for f in frames]
+    except ValueError as error:
+        raise UsageError(str(error)) from error
+
+
+def _view(args: Command) -> Any:
+    from . import image
+
+    try:
+        return image.color_view(args.colorCorrectionMode, args.display, args.view)
+    except ValueError as error:
+        raise UsageError(str(error)) from error
+
+
+def _warn(scene: "Scene", told: set[str], quiet: bool) -> None:
+    """Print each warning of the scene that was not printed before."""
+    for warning in scene.warnings:
+        if warning not in told and not quiet:
+            _say(f"warning: {warning}")
+        told.add(warning)
+
+
+def _say(text: str) -> None:
+    print(f"scratchwarp: {text}", file=sys.stderr, flush=True)
+
+
+def _plain(value: Any) -> Any:
+    """What JSON does not know, as what it knows."""
+    return value.tolist() if hasattr(value, "tolist") else str(value)
+
+
+_EXAMPLES = {
+    "": """scratchwarp demo out
+  scratchwarp render ball.usda ball.exr -w 640 --spp 64
+  scratchwarp explain ball.usda""",
+    "render": """scratchwarp render ball.usda ball.exr -w 480 --spp 16
+  scratchwarp render ball.usda ball.png -cam /World/Close -color openColorIO
+  scratchwarp render shot.usda shot.####.exr --frames 101:110x3,115 --sessionLayer scratched.usda
+  scratchwarp render ball.usda ball.exr --aov depth,normal --effect interreflection=off --json
+  scratchwarp render ball.usda ball.exr --spp 4096 --checkpoint ball.part --resume""",
+    "explain": "scratchwarp explain ball.usda\n  scratchwarp explain ball.usda --effect shadows=off --json",
+    "validate": "scratchwarp validate ball.usda\n  scratchwarp validate ball.usda --strict --json",
+    "demo": "scratchwarp demo out\n  scratchwarp demo out -w 320 --spp 4",
+}
+
+
+def _parser() -> argparse.ArgumentParser:
+    from . import __version__
+
+    parser = argparse.ArgumentParser(
+        prog="scratchwarp",
+        description="Render scratched, brushed and grooved surfaces from USD stages.",
+        epilog=f"examples:\n  {_EXAMPLES['']}",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--version", action="version", version=f"scratchwarp {__version__}")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+
+    def command(run: Any, says: str, json_too: bool = False) -> argparse.ArgumentParser:
+        name = run.__name__
+        made = commands.add_parser(
+            name,
+            help=says,
+            description=f"{says[0].upper()}{says[1:]}.",
+            epilog=f"examples:\n  {_EXAMPLES[name]}",
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+            allow_abbrev=False,
+        )
+        made.set_defaults(run=run)
+        made.add_argument("--quiet", action="store_true", help="say nothing but errors")
+        if json_too:
+            made.add_argument("--json", action="store_true", help="print results as JSON")
+        return made
+
+    made = command(render, "render a stage to EXR, PNG or NPZ", json_too=True)
+    arguments.add_stage(made)
+    made.add_argument("out", metavar="OUT", help="image.exr, .png or .npz; ### stands for the frame number")
+    when = made.add_mutually_exclusive_group()
+    when.add_argument("--frames", "-f", metavar="SPEC", help="101:110x3,115 is 101, 104, 107, 110 and 115")
+    when.add_argument("--defaultTime", "-d", action="store_true", help="values without a time, as without --frames")
+    made.add_argument("--aov", action="append", default=[], metavar="NAMES", help="layers besides color, alpha [all]")
+    made.add_argument("--checkpoint", metavar="FILE", help="keep finished tiles here while rendering")
+    made.add_argument("--resume", action="store_true", help="start from the tiles of --checkpoint")
+    arguments.add_settings(made)
+    arguments.add_color(made)
+
+    made = command(explain, "say which effects a stage calls for, and why", json_too=True)
+    arguments.add_stage(made)
+    arguments.add_settings(made)
+
+    made = command(validate, "check a stage against the scratch schemas", json_too=True)
+    made.add_argument("stage", metavar="FILE", help="USD file")
+    made.add_argument("--strict", "-t", action="store_true", help="warnings count as errors")
+
+    made = command(demo, "author the demo stages and render each to EXR and PNG")
+    made.add_argument("out", metavar="OUT_DIR", help="folder for stages and images; made when missing")
+    made.add_argument("--imageWidth", "-w", type=int, metavar="PIXELS", help="[as the stages say]")
+    made.add_argument("--spp", type=int, help="samples a pixel [as the stages say]")
+    made.add_argument("--threads", type=int, help="worker threads [all cores]")
+    return parser

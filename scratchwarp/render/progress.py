@@ -1,0 +1,56 @@
+"""A progress bar: samples a second and time left."""
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+Progress = Callable[[int, int, str], None]
+
+
+def silent(done: int, total: int, stage: str) -> None:
+    """Take progress and show nothing."""
+
+
+@contextmanager
+def bar(quiet: bool = False, title: str = "") -> Iterator[Progress]:
+    """Yield ``progress(done_samples, total_samples, stage)``, which draws a bar on stderr.
+
+    It may be called from any thread. A new ``stage`` starts a new line, so that the speed is that of the stage alone.
+    Silent when ``quiet``, or when stderr is no terminal.
+    """
+    if quiet or not sys.stderr.isatty():
+        yield silent
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, ProgressColumn, Task, TaskProgressColumn, TextColumn, TimeRemainingColumn
+    from rich.progress import Progress as Bars
+    from rich.text import Text
+
+    class Speed(ProgressColumn):
+        def render(self, task: Task) -> Text:
+            return Text(speed(task.finished_speed or task.speed), style="progress.data.speed")
+
+    columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), Speed(), TimeRemainingColumn())
+    tasks = {}
+    with Bars(*columns, console=Console(stderr=True)) as bars:
+
+        def progress(done: int, total: int, stage: str) -> None:
+            if stage not in tasks:
+                tasks[stage] = bars.add_task(" ".join(word for word in (title, stage) if word), total=total)
+            bars.update(tasks[stage], completed=done, total=total)
+
+        yield progress
+
+
+def speed(samples_per_second: float | None) -> str:
+    """``samples_per_second`` as text with three digits, empty for None.
+
+    >>> speed(1234567.0)
+    '1.23 M samples/s'
+    """
+    if samples_per_second is None:
+        return ""
+    for factor, letter in ((1e9, "G "), (1e6, "M "), (1e3, "k ")):
+        if samples_per_second >= factor:
+            return f"{samples_per_second / factor:.3g} {letter}samples/s"
+    return f"{samples_per_second:.3g} samples/s"
