@@ -51,6 +51,35 @@ def validate(path: str | Path, core: bool = True) -> list[Finding]:
 
 def validate_stage(stage: Usd.Stage, core: bool = True) -> list[Finding]:
     """The same for a stage that is already open."""
+    findings = {finding_of(error) for error in run(stage, core)}
+    return sorted(findings)
+
+
+def fix(path: str | Path) -> list[Finding]:
+    """Mend in the file what needs no guess (properties without effect are removed) and return what was mended.
+
+    Raises:
+        StageError: the file is missing, is no USD, or cannot be written.
+    """
+    usd_schemas.register()
+    stage = open_stage(path)
+    target, time = stage.GetEditTarget(), Usd.TimeCode.Default()
+    fixed = []
+    for error in run(stage, core=False):
+        finding = finding_of(error)
+        for fixer in error.GetFixers():
+            if not fixer.CanApplyFix(error, target, time):
+                continue
+            try:
+                fixer.ApplyFix(error, target, time)
+            except Tf.ErrorException as reason:
+                raise StageError(f"{path}: cannot be written ({last_line(reason)}); check its permissions") from reason
+            fixed.append(finding)
+    return sorted(fixed)
+
+
+def run(stage: Usd.Stage, core: bool) -> list[UsdValidation.ValidationError]:
+    """The errors of the framework, from our validators or from all."""
     usd_schemas.register_shaders()
     register_rules()
     registry = UsdValidation.ValidationRegistry()
@@ -59,8 +88,12 @@ def validate_stage(stage: Usd.Stage, core: bool = True) -> list[Finding]:
     else:
         names = [entry.name for entry in registry.GetValidatorMetadataForKeyword(KEYWORD)]
         context = UsdValidation.ValidationContext(registry.GetOrLoadValidatorsByName(names))
-    findings = {finding_of(error) for error in context.Validate(stage) if not error.HasNoError()}
-    return sorted(findings)
+    return [error for error in context.Validate(stage) if not error.HasNoError()]
+
+
+def last_line(error: Exception) -> str:
+    """The line of a USD error that says what happened."""
+    return str(error).strip().splitlines()[-1].strip()
 
 
 def open_stage(path: str | Path) -> Usd.Stage:
@@ -70,8 +103,7 @@ def open_stage(path: str | Path) -> Usd.Stage:
     try:
         return Usd.Stage.Open(str(path))
     except Tf.ErrorException as error:
-        reason = str(error).strip().splitlines()[-1].strip()
-        raise StageError(f"{path}: not a USD file that can be read ({reason})") from error
+        raise StageError(f"{path}: not a USD file that can be read ({last_line(error)})") from error
 
 
 def finding_of(error: UsdValidation.ValidationError) -> Finding:

@@ -24,8 +24,8 @@ def check_sizes(prim: Usd.Prim) -> Iterator[Problem]:
                 if get[name] is not None and get[name] > 1:
                     yield Problem(
                         layer_attribute(prim, layer, name).GetPath(),
-                        f"{name} of layer {layer!r} is {get[name]:g} in space 'uv', more than the whole uv square; author "
-                        "a fraction of it, or set space to 'surface' for micrometres",
+                        f"{name} of layer {layer!r} is {get[name]:g} in space 'uv', more than the whole uv square; "
+                        "author a fraction of it, or set space to 'surface' for micrometres",
                     )
         if get["width"] == 0:
             yield Problem(
@@ -45,16 +45,16 @@ def check_unread(prim: Usd.Prim, layer: str, distribution: str) -> Iterator[Prob
             instead = " or ".join(read.get(distribution, ())) or "the curves themselves"
             yield Problem(
                 attribute.GetPath(),
-                f"{name} of layer {layer!r} is {value(attribute):g}, but distribution {distribution!r} does not read it; "
-                f"the amount comes from {instead}",
+                f"{name} of layer {layer!r} is {value(attribute):g}, but distribution {distribution!r} does not read "
+                f"it; the amount comes from {instead}",
                 "warning",
             )
     density, coverage = layer_attribute(prim, layer, "density"), layer_attribute(prim, layer, "coverage")
     if distribution in STATISTICAL and coverage.HasAuthoredValue() and (value(density) or 0) > 0:
         yield Problem(
             coverage.GetPath(),
-            f"coverage of layer {layer!r} is {value(coverage):g} but its density {value(density):g} wins; set density to 0 "
-            "or remove coverage",
+            f"coverage of layer {layer!r} is {value(coverage):g} but its density {value(density):g} wins; set density "
+            "to 0 or remove coverage",
             "warning",
         )
 
@@ -67,8 +67,8 @@ def check_wave(prim: Usd.Prim) -> Iterator[Problem]:
             if value(attribute) == "diffraction":
                 yield Problem(
                     attribute.GetPath(),
-                    f"model of layer {layer!r} is 'diffraction' but {prim.GetPath()} lacks ScratchWaveAPI; apply it, or "
-                    "set the model to 'auto'",
+                    f"model of layer {layer!r} is 'diffraction' but {prim.GetPath()} lacks ScratchWaveAPI; apply it, "
+                    "or set the model to 'auto'",
                 )
         return
     first, last = value(prim.GetAttribute("scratch:wave:wavelengthRange"))
