@@ -1,0 +1,48 @@
+"""The README's two commands are the ones that run, and its map shows every room."""
+
+import re
+from pathlib import Path
+
+from house import ROOMS, modules, repository
+
+README = repository() / "README.md"
+INSTALL = "python -m pip install . && scratchwarp demo out"
+TEST = 'python -m pip install -e ".[test]" && python -m pytest'
+
+
+def test_the_two_commands_stand_in_the_readme():
+    blocks = re.findall(r"```(?:sh|bash|console)\n(.*?)```", README.read_text(encoding="utf-8"), re.DOTALL)
+    lines = [line.strip() for block in blocks for line in block.splitlines()]
+    assert INSTALL in lines and TEST in lines
+
+
+def test_ci_runs_the_command_of_the_readme():
+    assert TEST in (repository() / ".ci" / "run").read_text(encoding="utf-8").splitlines()
+
+
+def test_the_map_shows_every_room():
+    text = README.read_text(encoding="utf-8")
+    rooms = {m.room for m in modules()} & set(ROOMS) - {"__main__"}
+    missing = [room for room in sorted(rooms) if f"{room}/" not in text and f"{room}.py" not in text]
+    assert not missing
+
+
+def test_files_that_the_readme_names_exist():
+    targets = re.findall(r"\]\(([^)#:]+)\)", README.read_text(encoding="utf-8"))
+    assert targets
+    assert not [t for t in targets if not (README.parent / t).exists()]
+
+
+def test_licence_and_changelog():
+    assert "Apache License" in (repository() / "LICENSE").read_text(encoding="utf-8")
+    changes = (repository() / "CHANGELOG.md").read_text(encoding="utf-8")
+    assert re.search(r"^## Unreleased|^## 0\.1\.0", changes, re.MULTILINE)
+
+
+def test_no_binary_assets():
+    """Stages are written by scripts; the README's picture is the one picture, and small."""
+    kinds = (".exr", ".hdr", ".usdc", ".usdz", ".png", ".jpg", ".npz", ".bin")
+    folders = ("docs", "pipelines", "scratchwarp", "tests", "usd_schemas", "viewers")
+    files = [p for folder in folders for p in (repository() / folder).rglob("*") if p.suffix in kinds]
+    assert {p.relative_to(repository()) for p in files} <= {Path("docs/ball.png")}
+    assert all(p.stat().st_size < 400_000 for p in files)
