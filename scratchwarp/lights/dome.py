@@ -40,7 +40,7 @@ def distribution(pixels: np.ndarray) -> np.ndarray | None:
 
 
 def _pack(light: DomeLight, packer: Packer) -> Mapping[str, Any]:
-    fields = {f"e{name}": light.rotation[:, i] for i, name in enumerate("xyz")}
+    fields: dict[str, Any] = {f"e{name}": light.rotation[:, i] for i, name in enumerate("xyz")}
     texture = packer.image(light.texture)
     cdf = distribution(packer.images[texture]) if texture >= 0 else None
     if cdf is not None:

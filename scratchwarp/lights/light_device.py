@@ -77,8 +77,8 @@ class LightArrays:
     """Data that lights share: ``cdf`` cumulative distributions of domes and meshes, ``triangles`` corners of mesh
     lights (three each) [m], ``atlas`` their textures."""
 
-    cdf: wp.array(dtype=float)
-    triangles: wp.array(dtype=wp.vec3)
+    cdf: wp.array[float]
+    triangles: wp.array[wp.vec3]
     atlas: TextureAtlas
 
 
@@ -128,19 +128,20 @@ def no_hit() -> LightHit:
 
 
 @wp.func
-def shaped_radiance(l: Light, w: wp.vec3) -> wp.vec3:
+def shaped_radiance(light: Light, w: wp.vec3) -> wp.vec3:
     """Radiance that leaves the light towards x, seen from x along ``w``: UsdLux ShapingAPI's focus and cone."""
-    result = l.radiance
-    if l.shaped != 0:
-        cosine = -wp.dot(w, l.ez)
-        if l.focus > 0.0:
-            weight = wp.pow(wp.max(wp.abs(cosine), 1.0e-12), l.focus)
-            tint = l.focus_tint + weight * (wp.vec3(1.0, 1.0, 1.0) - l.focus_tint)
+    result = light.radiance
+    if light.shaped != 0:
+        cosine = -wp.dot(w, light.ez)
+        if light.focus > 0.0:
+            weight = wp.pow(wp.max(wp.abs(cosine), 1.0e-12), light.focus)
+            tint = light.focus_tint + weight * (wp.vec3(1.0, 1.0, 1.0) - light.focus_tint)
             result = wp.cw_mul(result, tint)
-        off_axis = wp.atan2(wp.length(wp.cross(w, l.ez)), cosine)
-        if off_axis > l.cone_angle:
+        off_axis = wp.atan2(wp.length(wp.cross(w, light.ez)), cosine)
+        if off_axis > light.cone_angle:
             result = wp.vec3(0.0, 0.0, 0.0)
-        elif off_axis > l.cone_start:
-            t = (off_axis - l.cone_start) / wp.max(l.cone_angle - l.cone_start, 1.0e-7)
-            result *= 1.0 - wp.min(t, 1.0) * wp.min(t, 1.0) * (3.0 - 2.0 * wp.min(t, 1.0))
+        elif off_axis > light.cone_start:
+            t = (off_axis - light.cone_start) / wp.max(light.cone_angle - light.cone_start, 1.0e-7)
+            t = wp.min(t, 1.0)
+            result = (1.0 - t * t * (3.0 - 2.0 * t)) * result
     return result

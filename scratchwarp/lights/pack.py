@@ -71,6 +71,13 @@ def _common(light: LightRecord, index: int) -> dict[str, Any]:
     }
 
 
+def _struct(fields: Mapping[str, Any]) -> Any:
+    struct = Light()
+    for name, value in fields.items():
+        setattr(struct, name, value)
+    return struct
+
+
 def pack_lights(
     lights: Sequence[LightRecord],
     textures: Sequence[Texture] = (),
@@ -107,13 +114,9 @@ def pack_lights(
     arrays.cdf = wp.array(np.concatenate(packer.cdf or [np.zeros(1, np.float32)]), dtype=float, device=device)
     corners = np.concatenate(packer.triangles or [np.zeros((1, 3, 3), np.float32)]).reshape(-1, 3)
     arrays.triangles = wp.array(corners, dtype=wp.vec3, device=device)
-    on_device = {}
-    for name, packed in rows.items():
-        table = np.zeros(len(packed), Light.numpy_dtype())
-        for row, fields in zip(table, packed, strict=True):
-            for key, value in fields.items():
-                row[key] = value
-        on_device[name] = wp.array(table, dtype=Light, device=device)
+    on_device = {
+        name: wp.array([_struct(f) for f in fields], dtype=Light, device=device) for name, fields in rows.items()
+    }
     return PackedLights(tuple(models), tuple(models.values()), on_device, slots, arrays, tuple(warnings))
 
 

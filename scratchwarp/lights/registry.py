@@ -1,7 +1,10 @@
 """All kinds of light: a new one is its two files and a line here."""
 
+from scratchwarp.lights.cylinder import CYLINDER
+from scratchwarp.lights.disk import DISK
 from scratchwarp.lights.distant import DISTANT
 from scratchwarp.lights.dome import DOME
+from scratchwarp.lights.mesh import MESH
 from scratchwarp.lights.model import LightModel
 from scratchwarp.lights.rect import RECT
 from scratchwarp.lights.sphere import SPHERE
@@ -13,7 +16,10 @@ MODELS: dict[type[Light], LightModel] = {
         DISTANT,
         SPHERE,
         RECT,
+        DISK,
+        CYLINDER,
         DOME,
+        MESH,
     )
 }
 """Record class -> its kind of light."""

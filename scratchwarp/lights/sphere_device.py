@@ -31,56 +31,62 @@ def sphere_one_minus_cos(distance: float, radius: float) -> float:
 
 
 @wp.func
-def sample_sphere(arrays: LightArrays, l: Light, x: wp.vec3, u: wp.vec2) -> LightSample:
+def near_distance(distance: float, radius: float, along: float, chord2: float) -> float:
+    """Distance to the near side of a ray that passes the centre after ``along`` and is inside for 2 sqrt(chord2)."""
+    return (distance - radius) * (distance + radius) / (along + wp.sqrt(wp.max(chord2, 0.0)))
+
+
+@wp.func
+def sample_sphere(arrays: LightArrays, light: Light, x: wp.vec3, u: wp.vec2) -> LightSample:
     """Uniform within the cone from outside; a point light's only direction."""
     s = no_sample()
-    p = l.center - x
+    p = light.center - x
     d = wp.length(p)
-    if l.delta != 0:
+    if light.delta != 0:
         if d > 1.0e-15:
             s.wi = p / d
             s.distance = d
-            s.radiance = shaped_radiance(l, s.wi) / (d * d)
+            s.radiance = shaped_radiance(light, s.wi) / (d * d)
             s.pdf = -1.0
-    elif d > l.radius:
-        versine = sphere_one_minus_cos(d, l.radius)
+    elif d > light.radius:
+        versine = sphere_one_minus_cos(d, light.radius)
         if versine > 1.0e-30:
             local = sample_cone(u, versine)
             s.wi = to_world(frame_around(p / d), local)
             across2 = d * d * (local[0] * local[0] + local[1] * local[1])
-            s.distance = wp.max(d * local[2] - wp.sqrt(wp.max(l.radius * l.radius - across2, 0.0)), 0.0)
-            s.radiance = shaped_radiance(l, s.wi)
+            s.distance = near_distance(d, light.radius, d * local[2], light.radius * light.radius - across2)
+            s.radiance = shaped_radiance(light, s.wi)
             s.pdf = 1.0 / (_TWO_PI * versine)
     return s
 
 
 @wp.func
-def hit_sphere(arrays: LightArrays, l: Light, x: wp.vec3, w: wp.vec3) -> LightHit:
+def hit_sphere(arrays: LightArrays, light: Light, x: wp.vec3, w: wp.vec3) -> LightHit:
     """Nearest point of the sphere from outside."""
     h = no_hit()
-    p = l.center - x
+    p = light.center - x
     d = wp.length(p)
     along = wp.dot(p, w)
-    if l.delta == 0 and d > l.radius and along > 0.0:
+    if light.delta == 0 and d > light.radius and along > 0.0:
         across = p - along * w
-        chord2 = l.radius * l.radius - wp.dot(across, across)
-        versine = sphere_one_minus_cos(d, l.radius)
+        chord2 = light.radius * light.radius - wp.dot(across, across)
+        versine = sphere_one_minus_cos(d, light.radius)
         if chord2 >= 0.0 and versine > 1.0e-30:
-            h.distance = wp.max(along - wp.sqrt(chord2), 0.0)
-            h.radiance = shaped_radiance(l, w)
+            h.distance = near_distance(d, light.radius, along, chord2)
+            h.radiance = shaped_radiance(light, w)
             h.pdf = 1.0 / (_TWO_PI * versine)
     return h
 
 
 @wp.func
 def span_sphere(
-    arrays: LightArrays, l: Light, x: wp.vec3, u: wp.vec3, v: wp.vec3, n: wp.vec3, sin_theta: float
+    arrays: LightArrays, light: Light, x: wp.vec3, u: wp.vec3, v: wp.vec3, n: wp.vec3, sin_theta: float
 ) -> Span:
     """Exact, see ``cap_device``; nothing from inside."""
     r = Span()
-    p = l.center - x
+    p = light.center - x
     d = wp.length(p)
-    if l.delta == 0 and d > l.radius:
-        half_angle = wp.atan2(l.radius, wp.sqrt((d - l.radius) * (d + l.radius)))
+    if light.delta == 0 and d > light.radius:
+        half_angle = wp.atan2(light.radius, wp.sqrt((d - light.radius) * (d + light.radius)))
         r = span_cap(p / d, half_angle, u, v, n, sin_theta)
     return r

@@ -8,10 +8,10 @@ class TextureAtlas:
     """``texels``: all images, row by row, row 0 at the top; image i starts at ``offset[i]`` and is ``width[i]`` by
     ``height[i]`` texels."""
 
-    texels: wp.array(dtype=wp.vec4)
-    offset: wp.array(dtype=int)
-    width: wp.array(dtype=int)
-    height: wp.array(dtype=int)
+    texels: wp.array[wp.vec4]
+    offset: wp.array[int]
+    width: wp.array[int]
+    height: wp.array[int]
 
 
 @wp.func
