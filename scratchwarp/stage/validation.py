@@ -8,14 +8,19 @@ them with OpenUSD, so that other programs which run its validators run them as w
 from dataclasses import dataclass
 from pathlib import Path
 
-from pxr import Sdf, Tf, Usd, UsdValidation
+from pxr import Sdf, Tf, Usd, UsdUtils, UsdValidation
 
 from scratchwarp import usd_schemas
 from scratchwarp.scene import StageError
 
+from .open import open_stage
+from .reading import Warnings
 from .validation_framework import KEYWORD, register_rules
 
 SEVERITY = {"Error": "error", "Warn": "warning"}
+# The usd-core wheel has no MaterialX: its nodes are unknown and its files cannot be read, whatever they say.
+MATERIALX_NODE = "shaderId 'ND_"
+MATERIALX_FILE = ".mtlx@ for reference"
 
 
 @dataclass(frozen=True, order=True)
@@ -46,7 +51,7 @@ def validate(path: str | Path, core: bool = True) -> list[Finding]:
         RuntimeError: a stage was opened in this process before the schemas were registered.
     """
     usd_schemas.register()
-    return validate_stage(open_stage(path), core)
+    return validate_stage(open_stage(path, Warnings()), core)
 
 
 def validate_stage(stage: Usd.Stage, core: bool = True) -> list[Finding]:
@@ -62,7 +67,7 @@ def fix(path: str | Path) -> list[Finding]:
         StageError: the file is missing, is no USD, or cannot be written.
     """
     usd_schemas.register()
-    stage = open_stage(path)
+    stage = open_stage(path, Warnings())
     target, time = stage.GetEditTarget(), Usd.TimeCode.Default()
     fixed = []
     for error in run(stage, core=False):
@@ -88,22 +93,18 @@ def run(stage: Usd.Stage, core: bool) -> list[UsdValidation.ValidationError]:
     else:
         names = [entry.name for entry in registry.GetValidatorMetadataForKeyword(KEYWORD)]
         context = UsdValidation.ValidationContext(registry.GetOrLoadValidatorsByName(names))
-    return [error for error in context.Validate(stage) if not error.HasNoError()]
+    # USD prints what its validators run into on stderr as well; the findings say it once.
+    quiet = UsdUtils.CoalescingDiagnosticDelegate()
+    try:
+        return [error for error in context.Validate(stage) if not error.HasNoError()]
+    finally:
+        quiet.TakeUncoalescedDiagnostics()
+        del quiet
 
 
 def last_line(error: Exception) -> str:
     """The line of a USD error that says what happened."""
     return str(error).strip().splitlines()[-1].strip()
-
-
-def open_stage(path: str | Path) -> Usd.Stage:
-    """Open a USD file; StageError naming it when it is missing or cannot be read."""
-    if not Path(path).is_file():
-        raise StageError(f"{path}: no such file; give the path of a .usd, .usda, .usdc or .usdz file")
-    try:
-        return Usd.Stage.Open(str(path))
-    except Tf.ErrorException as error:
-        raise StageError(f"{path}: not a USD file that can be read ({last_line(error)})") from error
 
 
 def finding_of(error: UsdValidation.ValidationError) -> Finding:
@@ -115,7 +116,12 @@ def finding_of(error: UsdValidation.ValidationError) -> Finding:
     message = " ".join(error.GetMessage().split())
     if str(where) not in message:
         message = f"{where}: {message}"
-    return Finding(SEVERITY.get(error.GetType().displayName, "warning"), rule, str(where), message)
+    severity = SEVERITY.get(error.GetType().displayName, "warning")
+    if MATERIALX_NODE in message:
+        severity, message = "warning", f"{message} It is a MaterialX node, which this build of USD cannot check."
+    if MATERIALX_FILE in message:
+        severity, message = "warning", f"{message} It is a MaterialX file, which this build of USD cannot read."
+    return Finding(severity, rule, str(where), message)
 
 
 def site_path(site: UsdValidation.ValidationErrorSite) -> Sdf.Path:
