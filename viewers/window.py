@@ -1,0 +1,199 @@
+"""The window: meshes with directions and scratches, the rendered image, each layer's profile and table."""
+
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import scratchwarp as sw
+from scratchwarp.scene import Camera, Scene
+
+from . import camera as camera_view
+from . import curves, directions, image, meshes, profiles, tables
+from .colors import BACKGROUND, TEXT, Shown, shown
+from .display import drawing, pyvista
+
+PAGE = 12  # layers that the plots show at once
+
+
+def view(
+    stage_path: Path | str,
+    screenshot: Path | str | None = None,
+    *,
+    frame: float | None = None,
+    camera: str | None = None,
+    width: int = 320,
+    spp: int = 4,
+    size: tuple[int, int] = (1600, 1000),
+    page: int = 0,
+) -> None:
+    """Show a stage in a window, or write the picture of one to ``screenshot`` without a display.
+
+    Args:
+        frame, camera: as ``scratchwarp.read`` has them.
+        width, spp: of the rendered image, in pixels and samples a pixel.
+        size: of the window in pixels.
+        page: which dozen of layers the plots show first.
+
+    Raises:
+        OSError: no display, no off-screen OpenGL, or the picture cannot be written.
+        ValueError: the stage is at fault.
+    """
+    show(sw.read(str(stage_path), frame=frame, camera=camera), screenshot, width=width, spp=spp, size=size, page=page)
+
+
+def show(
+    scene: Scene,
+    screenshot: Path | str | None = None,
+    *,
+    width: int = 320,
+    spp: int = 4,
+    size: tuple[int, int] = (1600, 1000),
+    page: int = 0,
+) -> None:
+    """As ``view`` for a scene that is read."""
+    pv = pyvista()
+    with drawing(screenshot is not None):
+        plotter = pv.Plotter(shape=(2, 2), off_screen=screenshot is not None, window_size=list(size), border=False)
+        try:
+            window = Window(plotter, scene, width, spp, page)
+            if screenshot is None:
+                window.connect()
+                plotter.show(title=f"scratchwarp: {scene.path}", auto_close=False)
+            else:
+                write(plotter, Path(screenshot))
+        finally:
+            plotter.close()
+            plotter.deep_clean()
+
+
+def write(plotter: Any, path: Path) -> None:
+    """Write what the plotter shows, whole or not at all."""
+    if path.suffix.lower() not in (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff"):
+        raise ValueError(f"{path}: a screenshot ends in .png, .jpg, .bmp or .tif")
+    if not path.parent.is_dir():
+        raise OSError(f"{path}: the folder {path.parent} does not exist")
+    part = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")
+    try:
+        plotter.screenshot(str(part))
+        os.replace(part, path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+class Window:
+    """The four parts of the window and what its keys do."""
+
+    def __init__(self, plotter: Any, scene: Scene, width: int, spp: int, page: int) -> None:
+        self.plotter, self.scene, self.width, self.spp = plotter, scene, width, spp
+        self.layers: list[Shown] = shown(scene)
+        self.page = page % max(1, -(-len(self.layers) // PAGE))
+        self.groups: dict[str, list[Any]] = {}
+        self.charts: list[Any] = []
+        for row, column in ((0, 0), (0, 1), (1, 0), (1, 1)):
+            plotter.subplot(row, column)
+            plotter.set_background(BACKGROUND)
+        self._draw_scene()
+        self._draw_image(image.picture(scene, width, spp))
+        self._draw_layers()
+
+    def connect(self) -> None:
+        """Bind the keys of ``scratchwarp.viewers.KEYS``."""
+        for key, name in (("d", "directions"), ("c", "curves"), ("l", "camera")):
+            self.plotter.add_key_event(key, lambda name=name: self.toggle(name))
+        self.plotter.add_key_event("t", self.edges)
+        self.plotter.add_key_event("n", self.next_page)
+        self.plotter.add_key_event("i", self.render_from_here)
+        self.plotter.add_key_event("o", self.look_through)
+
+    def toggle(self, name: str) -> None:
+        """Show or hide a group: directions, curves or camera."""
+        for actor in self.groups[name]:
+            actor.SetVisibility(not actor.GetVisibility())
+        self.plotter.render()
+
+    def edges(self) -> None:
+        """Show or hide the edges of triangles."""
+        for actor in self.groups["meshes"]:
+            actor.prop.show_edges = not actor.prop.show_edges
+        self.plotter.render()
+
+    def next_page(self) -> None:
+        """Show the next layers in the plots."""
+        self.page = (self.page + 1) % max(1, -(-len(self.layers) // PAGE))
+        self.plotter.subplot(1, 0)
+        for chart in self.charts:
+            self.plotter.remove_chart(chart)
+        self.plotter.subplot(1, 1)
+        self.plotter.renderer.clear_actors()
+        self._draw_layers()
+        self.plotter.render()
+
+    def look_through(self) -> None:
+        """Put the window's eye where the stage's camera is."""
+        self.plotter.subplot(0, 0)
+        seen, matrix = self.plotter.camera, self.scene.camera.transform
+        low, high = self.scene.bounds()
+        eye = matrix[:3, 3]
+        reach = float(np.dot(0.5 * (low + high) - eye, -matrix[:3, 2])) or 1.0
+        seen.position = eye
+        seen.focal_point = eye - matrix[:3, 2] * abs(reach)
+        seen.up = matrix[:3, 1]
+        left, right, bottom, top = self.scene.camera.window(*self._pixels())
+        seen.parallel_projection = self.scene.camera.projection == "orthographic"
+        if seen.parallel_projection:
+            seen.parallel_scale = 0.5 * (top - bottom)
+        else:
+            seen.view_angle = float(np.degrees(np.arctan(top) - np.arctan(bottom)))
+        self.plotter.renderer.reset_camera_clipping_range()
+        self.plotter.render()
+
+    def render_from_here(self) -> None:
+        """Render again with a pinhole camera where the window's eye is."""
+        self.plotter.subplot(0, 0)
+        seen = self.plotter.camera
+        back = np.subtract(seen.position, seen.focal_point)
+        back = back / np.linalg.norm(back)
+        right = np.cross(seen.up, back)
+        right = right / np.linalg.norm(right)
+        matrix = np.eye(4)
+        matrix[:3, 0], matrix[:3, 1], matrix[:3, 2], matrix[:3, 3] = right, np.cross(back, right), back, seen.position
+        high = 2 * np.tan(np.radians(seen.view_angle) / 2)
+        across = high * self._pixels()[0] / self._pixels()[1]
+        camera = Camera("", matrix, across, high, focal_length=1.0)
+        self._draw_image(image.picture(self.scene, self.width, self.spp, camera))
+        self.plotter.render()
+
+    def _pixels(self) -> tuple[int, int]:
+        return self.scene.options.resolution or (640, 480)
+
+    def _draw_scene(self) -> None:
+        self.plotter.subplot(0, 0)
+        wide, high = self._pixels()
+        self.groups = {
+            "meshes": meshes.add(self.plotter, self.scene),
+            "directions": directions.add(self.plotter, self.scene),
+            "curves": curves.add(self.plotter, self.scene),
+            "camera": camera_view.add(self.plotter, self.scene, wide / high),
+        }
+        self._title(f"{Path(self.scene.path).name}: directions and scratches")
+        self.look_through()
+
+    def _draw_image(self, pixels: np.ndarray) -> None:
+        self.plotter.subplot(0, 1)
+        image.add(self.plotter, pixels)
+        self._title(f"rendered, {self.spp} samples a pixel")
+
+    def _draw_layers(self) -> None:
+        items = self.layers[PAGE * self.page : PAGE * (self.page + 1)]
+        more = f" ({self.page + 1} of {-(-len(self.layers) // PAGE)})" if len(self.layers) > PAGE else ""
+        self.plotter.subplot(1, 0)
+        self.charts = profiles.add(self.plotter, items)
+        self._title(f"profiles{more}" if items else "no scratch layers")
+        self.plotter.subplot(1, 1)
+        tables.add(self.plotter, items)
+        self._title(f"tables, phi_i to the right, phi_o upwards{more}" if items else "")
+
+    def _title(self, text: str) -> None:
+        self.plotter.add_text(text, position="upper_left", font_size=9, color=TEXT, name="title")
