@@ -108,6 +108,23 @@ def validate(args: Command) -> int:
     return 1 if any(f.severity in counted for f in findings) else 0
 
 
+def view(args: Command) -> int:
+    """Open a window on STAGE, or write the picture of one."""
+    from .frames import parse_frames
+    from .viewers import view as show
+
+    try:
+        frames = parse_frames(args.frame) if args.frame else [None]
+    except ValueError as error:
+        raise UsageError(str(error)) from error
+    if len(frames) != 1:
+        raise UsageError(f"--frame {args.frame!r} is {len(frames)} frames; a window shows one")
+    options = {"width": args.imageWidth, "spp": args.spp}
+    given = {name: value for name, value in options.items() if value is not None}
+    show(args.stage, args.screenshot, frame=frames[0], camera=args.camera, **given)
+    return 0
+
+
 def demo(args: Command) -> int:
     """Author the demo stages in OUT_DIR and render each to EXR and PNG."""
     import scratchwarp as sw
@@ -187,12 +204,14 @@ _EXAMPLES = {
   scratchwarp render ball.usda ball.exr --spp 4096 --checkpoint ball.part --resume""",
     "explain": "scratchwarp explain ball.usda\n  scratchwarp explain ball.usda --effect shadows=off --json",
     "validate": "scratchwarp validate ball.usda\n  scratchwarp validate ball.usda --strict --json",
+    "view": "scratchwarp view ball.usda\n  scratchwarp view ball.usda --screenshot look.png --frame 12",
     "demo": "scratchwarp demo out\n  scratchwarp demo out -w 320 --spp 4",
 }
 
 
 def _parser() -> argparse.ArgumentParser:
     from . import __version__
+    from .viewers import KEYS
 
     parser = argparse.ArgumentParser(
         prog="scratchwarp",
@@ -238,6 +257,15 @@ def _parser() -> argparse.ArgumentParser:
     made = command(validate, "check a stage against the scratch schemas", json_too=True)
     made.add_argument("stage", metavar="FILE", help="USD file")
     made.add_argument("--strict", "-t", action="store_true", help="warnings count as errors")
+
+    made = command(view, "show a stage, its scratches, profiles and tables in a window")
+    made.epilog = "\n".join([str(made.epilog), "", "keys:", *(f"  {key}  {what}" for key, what in KEYS.items())])
+    made.add_argument("stage", metavar="STAGE", help="USD file")
+    made.add_argument("--screenshot", metavar="FILE", help="write this picture instead, without a display")
+    made.add_argument("--frame", "-f", metavar="N", help="time code [the default time]")
+    made.add_argument("--camera", "-cam", metavar="NAME", help="camera prim, by path or name")
+    made.add_argument("--imageWidth", "-w", type=int, metavar="PIXELS", help="of the rendered image in it")
+    made.add_argument("--spp", type=int, help="samples a pixel of the rendered image in it")
 
     made = command(demo, "author the demo stages and render each to EXR and PNG")
     made.add_argument("out", metavar="OUT_DIR", help="folder for stages and images; made when missing")

@@ -1,0 +1,35 @@
+import pytest
+
+from scratchwarp import viewers
+from scratchwarp.cli import main
+
+
+@pytest.fixture
+def shown(monkeypatch):
+    calls = []
+    monkeypatch.setattr(viewers, "view", lambda *args, **options: calls.append((*args, options)))
+    return calls
+
+
+def test_screenshot(shown):
+    argv = ["view", "a.usda", "--screenshot", "a.png", "-f", "12.5", "-cam", "Close", "-w", "200", "--spp", "2"]
+    assert main(argv) == 0
+    assert shown == [("a.usda", "a.png", {"frame": 12.5, "camera": "Close", "width": 200, "spp": 2})]
+
+
+def test_the_window_decides_what_is_left_out(shown):
+    assert main(["view", "a.usda"]) == 0
+    assert shown == [("a.usda", None, {"frame": None, "camera": None})]
+
+
+@pytest.mark.parametrize("frame", ["1:3", "x"])
+def test_a_window_shows_one_frame(shown, capsys, frame):
+    assert main(["view", "a.usda", "--frame", frame]) == 2
+    assert not shown
+
+
+def test_help_lists_the_keys(capsys):
+    with pytest.raises(SystemExit):
+        main(["view", "--help"])
+    said = capsys.readouterr().out
+    assert all(f"  {key}  {what}" in said for key, what in viewers.KEYS.items())
