@@ -1,0 +1,48 @@
+"""Kernels on several CPU threads: recorded launches cut into tiles, pulled by one worker fewer than threads and by
+the caller.
+
+A Warp launch on the CPU runs in the calling thread and releases the interpreter lock. Every tile writes places of its
+own, so the result has the same bits whatever the number of threads.
+"""
+
+import os
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from functools import lru_cache
+from itertools import count
+from typing import Any
+
+
+def default_threads() -> int:
+    """Processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else (os.cpu_count() or 1)
+
+
+@lru_cache(maxsize=4)
+def _workers(threads: int) -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(threads, thread_name_prefix="profiles")
+
+
+def run_tiles(tiles: Sequence[Callable[[], Any]], threads: int) -> None:
+    """Call every tile once, on ``threads`` threads."""
+    if threads <= 1 or len(tiles) <= 1:
+        for tile in tiles:
+            tile()
+        return
+    ticket = count()
+
+    def pull() -> None:
+        while (k := next(ticket)) < len(tiles):
+            tiles[k]()
+
+    helpers = [_workers(threads - 1).submit(pull) for _ in range(min(threads, len(tiles)) - 1)]
+    pull()
+    for helper in helpers:
+        helper.result()
+
+
+def ranges(total: int, pieces: int) -> list[tuple[int, int]]:
+    """``(start, length)`` of at most ``pieces`` nearly equal parts of ``range(total)``."""
+    pieces = max(1, min(pieces, total))
+    edges = [total * k // pieces for k in range(pieces + 1)]
+    return [(a, b - a) for a, b in zip(edges[:-1], edges[1:], strict=True) if b > a]
