@@ -1,1 +1,16 @@
+"""Scene + Settings -> EffectPlan: what the scene calls for, why, and with what settings.
 
+Files:
+    choice      EffectChoice, EffectPlan, TablePlan, LayerPlan: the result
+    resolve     every setting decided
+    effects     the effects and how each is decided; a new effect is one line there
+    layers      the scene's layers -> sublayers and the tables they share
+    profiles    a ScratchProfile record -> a profile to simulate
+    occlusion   whether anything can cast a shadow
+    make        make_plan
+"""
+
+from .choice import EffectChoice, EffectPlan, LayerPlan, TablePlan
+from .make import make_plan
+
+__all__ = ["EffectChoice", "EffectPlan", "LayerPlan", "TablePlan", "make_plan"]

@@ -53,6 +53,8 @@ class Layer:
         offset: shift of the pattern in cells, shape [2]; center: uv of concentric and spiral patterns, shape [2].
         metal, eta, k, ior, diffuse_color: of the scratch's own material when ``material`` is not inherit.
         curves: indices into ``Scene.curves``.
+        patterns: overlaid sets of parallel scratches of a worley layer, each turned within ``angle_spread``.
+        cross_angle: radians between the two sets of a crosshatch.
         profile: the cross-section; None only when the distribution or model needs none.
         extra: further attributes by schema name, as authored.
     """
@@ -86,6 +88,8 @@ class Layer:
     ior: float = 1.5
     diffuse_color: tuple[float, float, float] = (0.18, 0.18, 0.18)
     curves: tuple[int, ...] = ()
+    patterns: int = 1
+    cross_angle: float = np.pi / 2
     extra: tuple[tuple[str, Any], ...] = ()
 
     def __post_init__(self) -> None:
@@ -117,6 +121,10 @@ class Wave:
     wavelength_range: tuple[float, float] = (380.0, 780.0)
     samples: int = 16
     ior: np.ndarray | None = None  # [n, 3]: wavelength [nm], eta, k
+    phase: str = "smallAngle"
+    summation: str = "incoherent"
+    sampling: str = "auto"
+    roughness: float = 0.0  # [um]
 
     def __post_init__(self) -> None:
         in_range("ScratchWaveAPI", "coherenceRadius", self.coherence_radius, 1e-6, 1e9)
@@ -132,8 +140,9 @@ class Curves:
         path: prim path.
         points: world metres relative to ``Scene.origin`` (space object) or (u, v, 0) (space uv), shape [n, 3].
         counts: points of each curve, shape [c], int32.
-        widths: full width [um], shape [n]; depths: [um], shape [n].
+        widths: full width, shape [n]; depths: shape [n].
         space: object or uv.
+        width_unit, depth_unit: um, or uv for fractions of the uv square's side (possible in space uv only).
     """
 
     path: str
@@ -142,9 +151,13 @@ class Curves:
     widths: np.ndarray
     depths: np.ndarray
     space: str = "object"
+    width_unit: str = "um"
+    depth_unit: str = "um"
 
     def __post_init__(self) -> None:
         one_of(self.path, "scratch:curves:space", self.space, ("object", "uv"))
+        one_of(self.path, "width_unit", self.width_unit, ("um", "uv"))
+        one_of(self.path, "depth_unit", self.depth_unit, ("um", "uv"))
         points = freeze(self.path, "points", self.points, (None, 3))
         counts = freeze(self.path, "curveVertexCounts", self.counts, (None,), np.int32)
         if int(counts.sum()) != len(points):

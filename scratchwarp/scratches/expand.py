@@ -1,7 +1,7 @@
 """A Layer as the author wrote it -> the sublayers that the kernel runs through.
 
-``random`` and ``crosshatch`` are several sets of parallel scratches, and a spread of angles is several sets around
-the mean angle, as in Raymond 2016 section 5.3. Sublayers share what the layer covers so that, laid at random over one
+``random``, ``crosshatch`` and a ``worley`` layer of several patterns are sets of parallel scratches, each set turned by
+one angle picked within the spread, as in Raymond 2016 section 5.3. Sublayers share what the layer covers so that, laid at random over one
 another, they cover as much as the author asked for: 1 - (1 - a)^(1/n) each.
 """
 
@@ -15,8 +15,6 @@ from . import worley
 
 # Sets of parallel scratches that stand for a continuous spread of angles.
 SETS_RANDOM = 12
-SETS_SPREAD = 4
-SMALLEST_SPREAD = math.radians(0.5)
 
 
 @dataclass(frozen=True)
@@ -58,9 +56,7 @@ def _statistical(layer: Layer, angle: float, share: float, seed: int, offset: tu
         return None
     if covered > 0.9999:
         return Sublayer(layer, "full", angle, 1.0, seed=seed)
-    return Sublayer(
-        layer, "worley", angle, covered, radius, length / (2 * radius), width / (2 * radius), seed, offset
-    )
+    return Sublayer(layer, "worley", angle, covered, radius, length / (2 * radius), width / (2 * radius), seed, offset)
 
 
 def _regular(layer: Layer, distribution: str, angle: float) -> Sublayer | None:
@@ -80,16 +76,15 @@ def sublayers(layer: Layer) -> tuple[Sublayer, ...]:
         made = [_regular(layer, layer.distribution, layer.angle)]
     elif layer.distribution == "crosshatch":
         second = replace(layer, offset=(layer.offset[1], layer.offset[0]))
-        made = [_regular(layer, "linear", layer.angle), _regular(second, "linear", layer.angle + math.pi / 2)]
+        made = [_regular(layer, "linear", layer.angle), _regular(second, "linear", layer.angle + layer.cross_angle)]
     else:
         spread = abs(layer.angle_spread)
         if layer.distribution == "random" and spread == 0.0:
             spread = math.pi
         spread = min(spread, 2 * math.pi)
-        sets = SETS_RANDOM if layer.distribution == "random" else SETS_SPREAD
-        sets = 1 if spread < SMALLEST_SPREAD else sets
+        sets = max(layer.patterns, SETS_RANDOM if layer.distribution == "random" else 1)
         rng = np.random.default_rng([layer.seed & 0xFFFFFFFF, *layer.name.encode()])
-        turns = (np.arange(sets) + rng.random(sets)) / sets - 0.5 if sets > 1 else np.zeros(1)
+        turns = (np.arange(sets) + rng.random(sets)) / sets - 0.5
         made = []
         for turn in turns:
             shift = rng.random(2) * 1024.0

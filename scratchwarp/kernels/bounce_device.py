@@ -1,0 +1,203 @@
+"""What happens at one surface: which lobe a sample takes, where it goes on, and what the surface itself sheds."""
+
+import warp as wp
+
+from ..lights.light_device import Light, LightArrays
+from ..lights.mesh_device import mesh_light_hit, span_mesh
+from ..optics.frames_device import Frame, frame_with_tangent, to_local, to_world
+from ..reflectance.base_device import Base, base_albedo, base_sample, specular_bound
+from ..reflectance.profile_table_device import TableArrays, cone_direction, table_row, table_sample
+from ..scratches.layer_device import LayerData
+from .geometry_device import Geometry, Surface
+from .key import KernelKey
+from .layers_device import make_gather
+from .lobe_device import Lobe, power_heuristic
+from .material_device import MaterialArrays, MaterialData
+
+wp.set_module_options({"enable_backward": False})
+
+
+@wp.struct
+class Scatter:
+    """Where a path goes on: direction, its density (negative: certain), phi on a cone, and f cos / density."""
+
+    alive: int
+    direction: wp.vec3
+    pdf: float
+    phi: float
+    weight: wp.vec3
+
+
+@wp.func
+def largest(c: wp.vec3) -> float:
+    """The largest channel."""
+    return wp.max(wp.max(c[0], c[1]), c[2])
+
+
+@wp.func
+def above(direction: wp.vec3, ng: wp.vec3) -> wp.vec3:
+    """A direction that the shading normal sent below the facet, mirrored back above it; energy is kept."""
+    d = wp.dot(direction, ng)
+    return direction - 2.0 * wp.min(d, 0.0) * ng
+
+
+def make_bounce(key: KernelKey, rotated, emission_at):
+    """(choose, scatter, glow, pass_through), compiled for ``key``."""
+    gather = make_gather(key)
+
+    @wp.func
+    def choose(
+        g: Geometry,
+        layers: wp.array(dtype=LayerData),
+        tables: TableArrays,
+        m: MaterialData,
+        s: Surface,
+        frame: Frame,
+        base: Base,
+        wo: wp.vec3,
+        through: float,
+        step_x: wp.vec3,
+        step_y: wp.vec3,
+        u_lobe: wp.vec2,
+        u_more: wp.vec2,
+    ) -> Lobe:
+        """Draw the scratches of one layer or the base, in proportion to what each is likely to reflect (Eq. 4)."""
+        lobe = Lobe()
+        lobe.scale = 1.0
+        lobe.w_diffuse = 1.0
+        lobe.w_specular = 1.0
+        if wp.static(key.scratches):
+            if m.layers > 0:
+                l = gather(g, layers, m, s, frame, step_x, step_y, u_lobe[1], u_more[1])
+                lobe.w_specular = 1.0 - l.covered
+                lobe.w_diffuse = 1.0 - l.covered + l.kept
+                if l.chosen >= 0:
+                    kept = lobe.w_diffuse - lobe.w_specular
+                    of_base = lobe.w_specular * largest(base_albedo(base, to_local(frame, wo)))
+                    of_base += kept * largest(base.diffuse)
+                    p = l.weight / wp.max(l.weight + of_base, 1.0e-20)
+                    if u_lobe[0] < p:
+                        layer = layers[l.chosen]
+                        lobe.scale = l.weight / (p * layer.weight)
+                        lobe.scratch = 1
+                        lobe.frame = frame_with_tangent(frame.n, l.direction)
+                        lobe.wo = to_local(lobe.frame, wo)
+                        if wp.static(key.diffuse_scratches):
+                            if layer.table < 0:
+                                lobe.scratch = 2
+                                lobe.base.diffuse = layer.diffuse
+                                lobe.base.clearcoat_alpha = 1.0
+                                lobe.base.alpha_x = 1.0
+                                lobe.base.alpha_y = 1.0
+                                lobe.base.ior = 1.5
+                                lobe.w_diffuse = 1.0
+                                lobe.w_specular = 0.0
+                        if lobe.scratch == 1:
+                            lobe.table = layer.table
+                            phi = wp.atan2(lobe.wo[1], wp.max(lobe.wo[2], 0.0))
+                            lobe.row = table_row(tables, phi, l.xi)
+                            lobe.sin_theta = -wp.clamp(lobe.wo[0], -1.0, 1.0)
+                    else:
+                        lobe.scale = 1.0 / (1.0 - p)
+        if lobe.scratch == 0:
+            lobe.frame = frame
+            if wp.static(key.measured):
+                lobe.frame = rotated(frame, m)
+            lobe.wo = to_local(lobe.frame, wo)
+            lobe.base = base
+            if wp.static(key.opacity):
+                # what passes through was drawn before with probability ``through``
+                keep = 1.0 / wp.max(1.0 - through, 1.0e-6)
+                lobe.w_diffuse *= 1.0 - through
+                if m.presence == 1 or m.opacity_threshold > 0.0:
+                    lobe.w_specular *= 1.0 - through
+                lobe.scale *= keep
+        return lobe
+
+    @wp.func
+    def scatter(tables: TableArrays, lobe: Lobe, s: Surface, u: wp.vec2, v: float) -> Scatter:
+        out = Scatter()
+        if wp.static(key.scratches):
+            if lobe.scratch == 1:
+                c = table_sample(tables, lobe.table, lobe.row, lobe.sin_theta, u[0])
+                w = cone_direction(lobe.frame.x, lobe.frame.y, lobe.frame.n, lobe.sin_theta, c.phi)
+                if c.pdf > 0.0:
+                    out.alive = 1
+                    out.direction = w
+                    out.pdf = c.pdf
+                    out.phi = c.phi
+                    out.weight = c.weight * lobe.scale
+        if lobe.scratch != 1:
+            b = base_sample(lobe.base, lobe.wo, u, v, lobe.w_diffuse, lobe.w_specular)
+            if b.pdf > 0.0:
+                out.alive = 1
+                out.direction = to_world(lobe.frame, b.wi)
+                out.pdf = b.pdf
+                if b.delta == 1:
+                    out.pdf = -1.0
+                out.weight = b.weight * lobe.scale
+        if out.alive == 1 and wp.dot(out.direction, s.ng) <= 0.0:
+            # light sampling finds nothing below the facet, so this way has to count in full
+            out.direction = above(out.direction, s.ng)
+            out.pdf = -1.0
+        return out
+
+    @wp.func
+    def pass_through(m: MaterialData, base: Base, s: Surface, wo: wp.vec3) -> wp.vec3:
+        """Weight of light that goes straight through: what specular reflection leaves (all of it for cut-outs)."""
+        result = wp.vec3(1.0, 1.0, 1.0)
+        if m.presence == 0 and m.opacity_threshold <= 0.0:
+            result = result - specular_bound(base, wp.dot(s.ns, wo))
+        return result
+
+    @wp.func
+    def mesh_glow(
+        light_arrays: LightArrays,
+        lights: wp.array(dtype=Light),
+        s: Surface,
+        origin: wp.vec3,
+        direction: wp.vec3,
+        distance: float,
+        lobe: Lobe,
+        pdf: float,
+        phi: float,
+    ) -> wp.vec3:
+        hit = mesh_light_hit(light_arrays, lights[s.light], origin, direction, distance, s.ng)
+        weight = float(1.0)
+        if hit.distance >= 0.0 and pdf > 0.0:
+            other = hit.pdf
+            if wp.static(key.scratches):
+                if lobe.scratch == 1:
+                    other = 0.0
+                    f = lobe.frame
+                    span = span_mesh(light_arrays, lights[s.light], origin, f.x, f.y, f.n, lobe.sin_theta)
+                    if span.ok == 1 and phi >= span.lo and phi <= span.hi:
+                        other = 1.0 / wp.max(span.hi - span.lo, 1.0e-7)
+            if other > 0.0:
+                weight = power_heuristic(pdf, other)
+        return hit.radiance * weight
+
+    @wp.func
+    def glow(
+        arrays: MaterialArrays,
+        light_arrays: LightArrays,
+        lights: wp.array(dtype=Light),
+        m: MaterialData,
+        s: Surface,
+        origin: wp.vec3,
+        direction: wp.vec3,
+        distance: float,
+        lobe: Lobe,
+        pdf: float,
+        phi: float,
+    ) -> wp.vec3:
+        """Emission of the surface towards the ray that found it; mesh lights weighed against light sampling."""
+        total = wp.vec3(0.0, 0.0, 0.0)
+        if wp.static(key.emission):
+            total += emission_at(arrays, m, s.uv)
+        if wp.static(key.mesh_lights):
+            if s.light >= 0 and s.outside == 1:
+                total += mesh_glow(light_arrays, lights, s, origin, direction, distance, lobe, pdf, phi)
+        return total
+
+    return choose, scatter, glow, pass_through

@@ -1,0 +1,261 @@
+"""Light that reaches a point: shadow rays, light sampling, and what a sampled direction sees (Raymond 2016 section 5).
+
+On a scratch both ways of sampling work along the mirror cone in the measure d(phi): light sampling draws phi uniformly
+from the interval in which the cone may meet the light and asks the light what lies there; cone sampling inverts the
+table. They are combined by the power heuristic. A light without extent never lies on the cone; it is spread over the
+kernel f(psi) = (1 - (psi / Psi)^2)^2 of section 5.2, normalised: L(psi) = 3 E / (pi Psi^2) f(psi).
+"""
+
+import warp as wp
+
+from ..lights.cap_device import span_cap
+from ..lights.light_device import Light, LightArrays, LightSample, Span
+from ..lights.mesh_device import mesh_light_hit
+from ..lights.registry import MODELS
+from ..optics.frames_device import to_local
+from ..optics.sobol_device import sobol_2d
+from ..reflectance.base_device import base_eval_pdf
+from ..reflectance.profile_table_device import (
+    TableArrays,
+    cone_direction,
+    phi_bin,
+    table_pdf,
+    table_value,
+)
+from .geometry_device import Geometry, interpolate_uv, intersect
+from .key import KernelKey
+from .lobe_device import Lobe, power_heuristic
+from .material_device import MaterialArrays
+
+PSI = wp.constant(0.5 * 3.14159265 / 180.0)  # half the support of one degree
+MOST_LAYERS_OF_GLASS = 32
+
+
+def models_of(key: KernelKey):
+    """The light models of a key, in order."""
+    by_name = {model.name: model for model in MODELS.values()}
+    return [by_name[name] for name in key.lights]
+
+
+def make_transmittance(key: KernelKey, opacity_at):
+    """Device function: the part of the light that arrives along a shadow ray."""
+
+    @wp.func
+    def transmittance(
+        g: Geometry, arrays: MaterialArrays, origin: wp.vec3, direction: wp.vec3, distance: float
+    ) -> float:
+        result = float(1.0)
+        if wp.static(key.shadows):
+            if wp.static(key.opacity):
+                start = origin
+                left = distance
+                for _i in range(wp.static(MOST_LAYERS_OF_GLASS)):
+                    if result > 0.0:
+                        s = intersect(g, start, direction, left)
+                        if s.face < 0:
+                            return result
+                        result *= 1.0 - opacity_at(arrays, arrays.materials[s.material], interpolate_uv(g, s))
+                        start = s.p - s.offset * s.ng
+                        left = left - s.t
+                return result
+            else:
+                if g.empty == 0:
+                    if wp.mesh_query_ray_anyhit(g.mesh, origin, direction, distance):
+                        result = 0.0
+        return result
+
+    return transmittance
+
+
+def make_direct(key: KernelKey, transmittance):
+    """(direct, seen): light sampling at a point, and what a ray sampled from a lobe sees of the lights."""
+    models = models_of(key)
+    finite = [model.name != "dome" for model in models]
+    of_mesh = [model.geometry for model in models]
+
+    @wp.func
+    def linked(links: wp.array2d(dtype=wp.uint8), l: Light, instance: int) -> bool:
+        if wp.static(key.light_links):
+            if l.link >= 0 and instance >= 0:
+                return links[l.link, instance] != wp.uint8(0)
+        return True
+
+    @wp.func
+    def arrives(
+        g: Geometry,
+        arrays: MaterialArrays,
+        l: Light,
+        origin: wp.vec3,
+        wi: wp.vec3,
+        distance: float,
+    ) -> wp.vec3:
+        result = wp.vec3(1.0, 1.0, 1.0)
+        if l.shadow != 0:
+            reach = wp.min(distance * 0.9999, l.shadow_distance)
+            t = transmittance(g, arrays, origin, wi, reach)
+            result = t * result + (1.0 - t) * l.shadow_color
+        return result
+
+    @wp.func
+    def on_base(lobe: Lobe, l: Light, ls: LightSample, wi: wp.vec3) -> wp.vec3:
+        w_diffuse = lobe.w_diffuse
+        w_specular = lobe.w_specular
+        if wp.static(key.light_multipliers):
+            w_diffuse *= l.diffuse
+            w_specular *= l.specular
+        terms = base_eval_pdf(lobe.base, lobe.wo, wi, w_diffuse, w_specular)
+        value = wp.cw_mul(terms.value, ls.radiance)
+        if ls.pdf > 0.0:
+            weight = float(1.0)
+            if wp.static(not key.light_multipliers):
+                weight = power_heuristic(ls.pdf, terms.pdf)
+            value = value * (weight / ls.pdf)
+        return value
+
+    @wp.func
+    def cone_span(light_arrays: LightArrays, kind: int, l: Light, p: wp.vec3, lobe: Lobe, toward: wp.vec3) -> Span:
+        span = Span()
+        if l.delta == 1:
+            span = span_cap(toward, PSI, lobe.frame.x, lobe.frame.y, lobe.frame.n, lobe.sin_theta)
+        else:
+            for j in range(wp.static(len(models))):
+                if wp.static(finite[j]):
+                    if kind == j:
+                        span = wp.static(models[j].span)(
+                            light_arrays, l, p, lobe.frame.x, lobe.frame.y, lobe.frame.n, lobe.sin_theta
+                        )
+        return span
+
+    @wp.func
+    def direct(
+        g: Geometry,
+        arrays: MaterialArrays,
+        tables: TableArrays,
+        light_arrays: LightArrays,
+        lights: wp.array(dtype=Light),
+        starts: wp.array(dtype=int),
+        links: wp.array2d(dtype=wp.uint8),
+        p: wp.vec3,
+        ng: wp.vec3,
+        instance: int,
+        lobe: Lobe,
+        index: wp.uint32,
+        dimension: int,
+        seed: wp.uint32,
+    ) -> wp.vec3:
+        """Light sampling of every light; ``p`` is already off the surface."""
+        total = wp.vec3(0.0, 0.0, 0.0)
+        for j in range(wp.static(len(models))):
+            for i in range(starts[j], starts[j + 1]):
+                l = lights[i]
+                if linked(links, l, instance):
+                    u = sobol_2d(index, dimension + i, seed)
+                    if lobe.scratch != 1:
+                        ls = wp.static(models[j].sample)(light_arrays, l, p, u)
+                        if ls.pdf != 0.0 and wp.dot(ls.wi, ng) > 0.0:
+                            value = on_base(lobe, l, ls, to_local(lobe.frame, ls.wi))
+                            if wp.max(wp.max(value[0], value[1]), value[2]) > 0.0:
+                                total += wp.cw_mul(value, arrives(g, arrays, l, p, ls.wi, ls.distance))
+                    if wp.static(key.scratches):
+                        if lobe.scratch == 1:
+                            if wp.static(finite[j]):
+                                toward = wp.vec3(0.0, 0.0, 1.0)
+                                e = wp.vec3(0.0, 0.0, 0.0)
+                                far = float(0.0)
+                                if l.delta == 1:
+                                    ls = wp.static(models[j].sample)(light_arrays, l, p, u)
+                                    toward = ls.wi
+                                    e = ls.radiance
+                                    far = ls.distance
+                                span = cone_span(light_arrays, j, l, p, lobe, toward)
+                                if span.ok == 1 and span.hi > span.lo:
+                                    phi = span.lo + u[0] * (span.hi - span.lo)
+                                    w = cone_direction(lobe.frame.x, lobe.frame.y, lobe.frame.n, lobe.sin_theta, phi)
+                                    row_value = table_value(
+                                        tables, lobe.table, lobe.row, phi_bin(tables, phi), lobe.sin_theta
+                                    )
+                                    value = row_value * (wp.cos(phi) * (span.hi - span.lo))
+                                    if l.delta == 1:
+                                        x = wp.acos(wp.clamp(wp.dot(w, toward), -1.0, 1.0)) / PSI
+                                        f = wp.max(1.0 - x * x, 0.0)
+                                        value = wp.cw_mul(value, e) * (3.0 * f * f / (wp.pi * PSI * PSI))
+                                        w = toward
+                                    else:
+                                        hit = wp.static(models[j].hit)(light_arrays, l, p, w)
+                                        if wp.static(of_mesh[j]):
+                                            met = intersect(g, p, w, 1.0e10)
+                                            if met.face >= 0:
+                                                if met.light == i and met.outside == 1:
+                                                    hit = mesh_light_hit(light_arrays, l, p, w, met.t, met.ng)
+                                        far = hit.distance
+                                        weight = float(0.0)
+                                        if hit.distance >= 0.0:
+                                            weight = power_heuristic(
+                                                1.0 / (span.hi - span.lo), table_pdf(tables, lobe.table, lobe.row, phi)
+                                            )
+                                        value = wp.cw_mul(value, hit.radiance) * weight
+                                    if wp.static(key.light_multipliers):
+                                        value = value * l.specular
+                                    if wp.max(wp.max(value[0], value[1]), value[2]) > 0.0 and wp.dot(w, ng) > 0.0:
+                                        total += wp.cw_mul(value, arrives(g, arrays, l, p, w, far))
+        return total * lobe.scale
+
+    @wp.func
+    def seen(
+        light_arrays: LightArrays,
+        lights: wp.array(dtype=Light),
+        starts: wp.array(dtype=int),
+        links: wp.array2d(dtype=wp.uint8),
+        p: wp.vec3,
+        w: wp.vec3,
+        gone: float,
+        reach: float,
+        instance: int,
+        lobe: Lobe,
+        pdf: float,
+        phi: float,
+        depth: int,
+    ) -> wp.vec4:
+        """Radiance (and in w whether any bounded light lies there) of lights along a ray, from ``gone`` to ``reach``.
+
+        ``pdf``: density with which the ray was drawn, per solid angle or per phi on a scratch; negative: certain.
+        ``depth`` 0: the camera looks.
+        """
+        total = wp.vec3(0.0, 0.0, 0.0)
+        met = float(0.0)
+        for j in range(wp.static(len(models))):
+            if wp.static(not of_mesh[j]):
+                for i in range(starts[j], starts[j + 1]):
+                    l = lights[i]
+                    wanted = linked(links, l, instance)
+                    if depth == 0 and l.camera_visible == 0:
+                        wanted = False
+                    if wanted:
+                        hit = wp.static(models[j].hit)(light_arrays, l, p, w)
+                        if hit.distance >= gone and hit.distance < reach:
+                            weight = float(1.0)
+                            if pdf > 0.0:
+                                other = hit.pdf
+                                if wp.static(key.scratches):
+                                    if lobe.scratch == 1:
+                                        other = 0.0
+                                        if wp.static(finite[j]):
+                                            span = cone_span(light_arrays, j, l, p, lobe, w)
+                                            if span.ok == 1 and span.hi > span.lo:
+                                                if phi >= span.lo and phi <= span.hi:
+                                                    other = 1.0 / (span.hi - span.lo)
+                                if other > 0.0:
+                                    weight = power_heuristic(pdf, other)
+                            if wp.static(key.light_multipliers):
+                                # lobes with light sampling count there alone, delta lobes here
+                                if depth > 0:
+                                    if pdf > 0.0 and lobe.scratch != 1:
+                                        weight = 0.0
+                                    else:
+                                        weight *= l.specular
+                            total += hit.radiance * weight
+                            if wp.static(finite[j]):
+                                met = 1.0
+        return wp.vec4(total[0], total[1], total[2], met)
+
+    return direct, seen

@@ -1,0 +1,48 @@
+"""What a kernel is specialised by: only the code that these fields name is compiled."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class KernelKey:
+    """One specialisation.
+
+    Attributes:
+        lights: kinds of light, in the order of their ranges; distributions: kinds of scratch pattern.
+        filter: box, gaussian or blackmanHarris.
+        directed: some material has a direction (scratches or anisotropy), so tangents are read.
+        lens, orthographic: of the camera.
+        shadows: something can occlude; opacity: some surface lets light through; emission: some surface glows.
+        normal_maps, display_colors, textures: of the materials.
+        preview, measured: UsdPreviewSurface bases, ScratchSurface bases.
+        diffuse_scratches: some scratch is a Lambert surface.
+        delta_lights: some light has no extent. light_links: some light picks what it lights.
+        light_multipliers: some light's diffuse or specular multiplier is not 1.
+        mesh_lights: some geometry is a light. path: indirect bounces.
+    """
+
+    lights: tuple[str, ...] = ()
+    distributions: tuple[str, ...] = ()
+    filter: str = "box"
+    directed: bool = False
+    lens: bool = False
+    orthographic: bool = False
+    shadows: bool = False
+    opacity: bool = False
+    emission: bool = False
+    normal_maps: bool = False
+    display_colors: bool = False
+    textures: bool = False
+    preview: bool = True
+    measured: bool = False
+    diffuse_scratches: bool = False
+    delta_lights: bool = False
+    light_links: bool = False
+    light_multipliers: bool = False
+    mesh_lights: bool = False
+    path: bool = False
+
+    @property
+    def scratches(self) -> bool:
+        """Whether any scratch code is compiled."""
+        return bool(self.distributions)

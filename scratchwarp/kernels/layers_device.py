@@ -1,0 +1,107 @@
+"""How much each layer covers under a sample's footprint, and one of them drawn in proportion (Raymond 2016 Eq. 3, 4)."""
+
+import warp as wp
+
+from ..optics.frames_device import Frame
+from ..scratches import device_function, kind_number
+from ..scratches.layer_device import LayerData, LayerHit
+from .geometry_device import Geometry, Surface, uv_motion
+from .key import KernelKey
+from .lobe_device import Layers
+from .material_device import MaterialData
+
+# Layers that cover less than this are culled (Raymond 2016 section 6.1).
+SMALLEST_COVERAGE = wp.constant(1.0e-6)
+
+
+def make_gather(key: KernelKey):
+    """Device function that runs through a material's layers, compiled for the distributions of ``key``."""
+    functions = [device_function(name) for name in key.distributions]
+    numbers = [kind_number(name) for name in key.distributions]
+
+    @wp.func
+    def covered(layer: LayerData, q: wp.vec2d, scale: wp.vec2d, ax: wp.vec2, ay: wp.vec2, phase: float) -> LayerHit:
+        hit = LayerHit()
+        hit.direction = wp.vec2(1.0, 0.0)
+        for j in range(wp.static(len(functions))):
+            if layer.kind == wp.static(numbers[j]):
+                hit = wp.static(functions[j])(layer, q, scale, ax, ay, phase)
+        return hit
+
+    @wp.func
+    def gather(
+        g: Geometry,
+        layers: wp.array(dtype=LayerData),
+        m: MaterialData,
+        s: Surface,
+        frame: Frame,
+        step_x: wp.vec3,
+        step_y: wp.vec3,
+        phase: float,
+        u: float,
+    ) -> Layers:
+        """``step_x``, ``step_y``: edges of the footprint in the triangle's plane [m]; ``frame``: x the tangent."""
+        du = g.dpdu[s.face]
+        dv = g.dpdv[s.face]
+        outward = wp.where(s.outside == 1, 1.0, -1.0) * s.ng
+        # a mirrored mapping is mirrored back, so that angles turn counter-clockwise seen from outside
+        handed = wp.where(wp.dot(wp.cross(du, dv), outward) < 0.0, -1.0, 1.0)
+        jx = uv_motion(g, s, step_x)
+        jy = uv_motion(g, s, step_y)
+        flat = wp.normalize(du)
+        across = wp.cross(outward, flat)
+
+        total = float(0.0)
+        kept = float(0.0)
+        weight = float(0.0)
+        xi = float(u)
+        result = Layers()
+        result.chosen = -1
+        for k in range(m.layers):
+            layer = layers[m.first_layer + k]
+            scale = wp.vec2d(wp.float64(1.0), wp.float64(1.0))
+            if layer.uv_space == 0:
+                scale = g.pattern_scale[s.instance]
+            flip = wp.vec2d(scale[0], wp.float64(handed) * scale[1])
+            sx = float(flip[0])
+            sy = float(flip[1])
+            hit = covered(
+                layer,
+                wp.vec2d(s.uv[0] * flip[0], s.uv[1] * flip[1]),
+                flip,
+                wp.vec2(jx[0] * sx, jx[1] * sy),
+                wp.vec2(jy[0] * sx, jy[1] * sy),
+                wp.frac(phase + 0.618034 * float(k)),
+            )
+            if hit.alpha > SMALLEST_COVERAGE:
+                total += hit.alpha
+                if layer.keeps_diffuse == 1:
+                    kept += hit.alpha
+                part = hit.alpha * layer.weight
+                weight += part
+                p = part / wp.max(weight, 1.0e-30)
+                if xi < p:
+                    xi = xi / p
+                    result.chosen = m.first_layer + k
+                    # from pattern space to the surface: along the mapped direction, as an angle from dP/du
+                    mapped = du * (hit.direction[0] / sx) + dv * (hit.direction[1] / sy)
+                    along = wp.dot(mapped, flat)
+                    aside = wp.dot(mapped, across)
+                    norm = wp.sqrt(along * along + aside * aside)
+                    if norm > 0.0:
+                        along = along / norm
+                        aside = aside / norm
+                    else:
+                        along = 1.0
+                    side = wp.where(s.outside == 1, aside, -aside)
+                    result.direction = along * frame.x + side * frame.y
+                else:
+                    xi = (xi - p) / wp.max(1.0 - p, 1.0e-7)
+        share = 1.0 / wp.max(total, 1.0)
+        result.covered = total * share
+        result.kept = kept * share
+        result.weight = weight * share
+        result.xi = wp.clamp(xi, 0.0, 0.9999999)
+        return result
+
+    return gather

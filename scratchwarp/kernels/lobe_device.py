@@ -1,0 +1,49 @@
+"""The lobe that a sample chose, scratch or base, and how the material's layers are weighed to choose it."""
+
+import warp as wp
+
+from ..optics.frames_device import Frame
+from ..reflectance.base_device import Base
+
+wp.set_module_options({"enable_backward": False})
+
+
+@wp.struct
+class Lobe:
+    """One reflecting lobe at a point, ``scale`` holding 1 / probability of having chosen it."""
+
+    scratch: int  # 1: a mirror cone from a table
+    frame: Frame  # shading frame; for a scratch x runs along it
+    wo: wp.vec3  # in the frame
+    scale: float
+    base: Base
+    w_diffuse: float  # what the scratches leave of the base's diffuse and specular lobes
+    w_specular: float
+    table: int
+    row: int
+    sin_theta: float  # of the incident cone, sin(theta_i) = -sin(theta_o)
+
+
+@wp.struct
+class Layers:
+    """What the layers at a point add up to."""
+
+    covered: float  # sum of alpha, at most 1
+    kept: float  # part of it through which the base's diffuse term is seen
+    weight: float  # sum of alpha times reflectance
+    chosen: int  # layer drawn in proportion to that, or -1
+    direction: wp.vec3  # of the chosen scratches, in the tangent plane
+    xi: float  # what is left of the random number
+
+
+@wp.func
+def power_heuristic(a: float, b: float) -> float:
+    """Weight of a sample drawn with density ``a`` where another way has density ``b`` (Veach, exponent 2)."""
+    ratio = b / wp.max(a, 1.0e-30)
+    return 1.0 / (1.0 + ratio * ratio)
+
+
+@wp.func
+def luminance(c: wp.vec3) -> float:
+    """Y of linear Rec.709."""
+    return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]

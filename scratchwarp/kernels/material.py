@@ -1,0 +1,122 @@
+"""Scene materials -> device materials, with their scratch layers."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import warp as wp
+
+from ..plan.choice import LayerPlan
+from ..plan.layers import conductor_index
+from ..reflectance import texture
+from ..scene import PreviewSurface, Scene, ScratchSurface, TextureInput
+from ..scene.texture import CHANNELS, WRAPS
+from ..scratches import kind_number
+from ..scratches.expand import bend
+from ..scratches.layer_device import LayerData
+from .material_device import MaterialArrays, MaterialData, TextureRead
+
+KINDS = ("preview", "conductor", "dielectric", "diffuse")
+
+
+@dataclass(frozen=True, eq=False)
+class PackedMaterials:
+    """Device materials and layers, in scene order."""
+
+    arrays: MaterialArrays
+    layers: Any
+    curves: tuple[Any, ...] = ()
+
+
+def _read(value: Any, reads: list[TextureRead]) -> int:
+    if not isinstance(value, TextureInput):
+        return -1
+    r = TextureRead()
+    r.texture = value.texture
+    r.channel = CHANNELS.index(value.channel)
+    r.wrap_s, r.wrap_t = WRAPS.index(value.wrap_s), WRAPS.index(value.wrap_t)
+    r.scale, r.bias = wp.vec4(*map(float, value.scale)), wp.vec4(*map(float, value.bias))
+    r.row0, r.row1 = wp.vec3(*map(float, value.transform[0])), wp.vec3(*map(float, value.transform[1]))
+    reads.append(r)
+    return len(reads) - 1
+
+
+def _color(value: Any) -> Any:
+    return wp.vec3(0.0, 0.0, 0.0) if isinstance(value, TextureInput) else wp.vec3(*map(float, value))
+
+
+def _scalar(value: Any) -> float:
+    return 0.0 if isinstance(value, TextureInput) else float(value)
+
+
+def _preview(m: MaterialData, s: PreviewSurface, reads: list[TextureRead]) -> None:
+    m.kind = KINDS.index("preview")
+    for field, source in (("diffuse", "diffuse_color"), ("emissive", "emissive_color"), ("specular", "specular_color")):
+        value = getattr(s, source)
+        setattr(m, field, _color(value))
+        setattr(m, f"{field}_read", _read(value, reads))
+    for field in ("metallic", "roughness", "clearcoat", "clearcoat_roughness", "opacity"):
+        value = getattr(s, field)
+        setattr(m, field, _scalar(value))
+        setattr(m, f"{field}_read", _read(value, reads))
+    m.specular_workflow = int(s.use_specular_workflow)
+    m.opacity_threshold = s.opacity_threshold
+    m.presence = int(s.opacity_mode == "presence")
+    m.ior = s.ior
+    m.normal_read = _read(s.normal, reads)
+    m.cos_rotation = 1.0
+
+
+def _scratch_surface(m: MaterialData, s: ScratchSurface) -> None:
+    m.kind = KINDS.index(s.base)
+    eta, k = conductor_index(s)
+    m.eta, m.k = wp.vec3(*eta), wp.vec3(*k)
+    m.diffuse, m.ior, m.opacity = wp.vec3(*s.color), s.ior, 1.0
+    m.alpha_x, m.alpha_y = s.roughness * (1.0 + s.anisotropy), s.roughness * (1.0 - s.anisotropy)
+    m.cos_rotation, m.sin_rotation = math.cos(s.rotation), math.sin(s.rotation)
+    for name in ("diffuse", "emissive", "specular", "metallic", "roughness", "clearcoat", "clearcoat_roughness"):
+        setattr(m, f"{name}_read", -1)
+    m.opacity_read = m.normal_read = -1
+
+
+def pack_layer(plan: LayerPlan, curves: Any = None) -> LayerData:
+    """Device record of one sublayer; see ``LayerData``. ``curves``: its packed segments, if it has any."""
+    sub, layer = plan.sublayer, plan.sublayer.layer
+    d = LayerData()
+    d.kind = kind_number(sub.distribution)
+    d.uv_space = int(layer.space == "uv")
+    d.cos_a, d.sin_a = math.cos(sub.angle), math.sin(sub.angle)
+    d.inv_length, d.inv_width = 1.0 / sub.cell_length, 1.0 / sub.cell_width
+    d.radius, d.width_variation = sub.radius, layer.width_variation
+    d.offset = wp.vec2d(*sub.offset)
+    d.seed = sub.seed
+    d.width, d.pitch = layer.width, max(layer.pitch, 1e-30)
+    d.center = wp.vec2d(*layer.center)
+    d.bend, d.bend_number = bend(layer)
+    d.mean, d.table, d.keeps_diffuse, d.weight = sub.coverage, plan.table, int(plan.keeps_diffuse), plan.weight
+    d.diffuse = wp.vec3(*plan.diffuse)
+    if curves is not None:
+        d.first, d.count, d.bvh = curves.first, curves.count, curves.bvh
+    return d
+
+
+def pack(scene: Scene, layers: list[list[LayerData]], device: str = "cpu") -> PackedMaterials:
+    """Device materials; ``layers[i]`` are the packed sublayers of material i, the ones that cut deepest last."""
+    reads: list[TextureRead] = []
+    records, flat = [], []
+    for material, own in zip(scene.materials, layers, strict=True):
+        m = MaterialData()
+        if isinstance(material.surface, PreviewSurface):
+            _preview(m, material.surface, reads)
+        else:
+            _scratch_surface(m, material.surface)
+        m.display_color = int(material.uses_display_color)
+        m.first_layer, m.layers = len(flat), len(own)
+        flat.extend(own)
+        records.append(m)
+    arrays = MaterialArrays()
+    arrays.materials = wp.array(records or [MaterialData()], dtype=MaterialData, device=device)
+    arrays.reads = wp.array(reads or [TextureRead()], dtype=TextureRead, device=device)
+    arrays.atlas = texture.pack_textures([t.pixels for t in scene.textures], device=device)
+    packed_layers = wp.array(flat or [LayerData()], dtype=LayerData, device=device)
+    return PackedMaterials(arrays, packed_layers)

@@ -1,0 +1,271 @@
+"""The kernel: one thread a pixel, all of a launch's samples, the code of one KernelKey."""
+
+from functools import lru_cache
+
+import warp as wp
+
+from ..lights.light_device import Light, LightArrays
+from ..optics.filters_device import filter_offset_blackman_harris, filter_offset_box, filter_offset_gaussian
+from ..optics.frames_device import to_local
+from ..optics.hash_device import pixel_seed
+from ..optics.sobol_device import sobol_2d
+from ..reflectance.base_device import base_albedo
+from ..reflectance.profile_table_device import TableArrays
+from ..scratches.layer_device import LayerData
+from .base_at_device import make_base_at
+from .bounce_device import make_bounce
+from .camera_device import CameraData, footprint_step, lens_point, orthographic_ray, perspective_ray
+from .direct_device import make_direct, make_transmittance
+from .film_device import FilmArrays, Window
+from .geometry_device import (
+    Geometry,
+    Surface,
+    interpolate_normal,
+    interpolate_tangent,
+    interpolate_uv,
+    intersect,
+    lifted,
+)
+from .key import KernelKey
+from .lobe_device import Lobe, luminance
+from .material_device import MaterialArrays
+
+FILTERS = {
+    "box": filter_offset_box,
+    "gaussian": filter_offset_gaussian,
+    "blackmanHarris": filter_offset_blackman_harris,
+}
+# Sample dimensions: pair 0 the filter, 1 the lens, then for each surface OWN pairs and one a light.
+OWN_PAIRS = 4
+MOST_PASSES = 32  # transparent surfaces along one ray
+
+
+@lru_cache(maxsize=256)
+def make_kernel(key: KernelKey):
+    """The render kernel of a key; the same key gives the same kernel."""
+    camera_ray = orthographic_ray if key.orthographic else perspective_ray
+    filter_offset = FILTERS[key.filter]
+    base_at, opacity_at, emission_at, frame_at, rotated = make_base_at(key)
+    transmittance = make_transmittance(key, opacity_at)
+    direct, seen = make_direct(key, transmittance)
+    choose, scatter, glow, pass_through = make_bounce(key, rotated, emission_at)
+
+    @wp.kernel(module="unique", module_options={"enable_backward": False})
+    def render_pixels(
+        window: Window,
+        camera: CameraData,
+        g: Geometry,
+        arrays: MaterialArrays,
+        layers: wp.array(dtype=LayerData),
+        tables: TableArrays,
+        light_arrays: LightArrays,
+        lights: wp.array(dtype=Light),
+        starts: wp.array(dtype=int),
+        links: wp.array2d(dtype=wp.uint8),
+        film: FilmArrays,
+    ):
+        tid = wp.tid()
+        column = window.tile_x + tid % window.tile_w
+        line = window.tile_y + tid // window.tile_w
+        px = window.x0 + column
+        py = window.y0 + line
+        seed = pixel_seed(px, py, window.seed)
+        nlights = starts[wp.static(len(key.lights))]
+
+        for sample in range(window.first, window.first + window.count):
+            index = wp.uint32(sample)
+            jitter = wp.static(filter_offset)(sobol_2d(index, 0, seed), window.filter_width)
+            lens = wp.vec2(0.0, 0.0)
+            if wp.static(key.lens):
+                lens = lens_point(sobol_2d(index, 1, seed))
+            ray = wp.static(camera_ray)(camera, float(px) + 0.5 + jitter[0], float(py) + 0.5 + jitter[1], lens)
+            start = ray.origin + ray.start * ray.direction
+            direction = ray.direction
+            reach = ray.reach - ray.start
+
+            lobe = Lobe()
+            throughput = wp.vec3(camera.exposure, camera.exposure, camera.exposure)
+            color = wp.vec3(0.0, 0.0, 0.0)
+            part_base = wp.vec3(0.0, 0.0, 0.0)
+            part_scratch = wp.vec3(0.0, 0.0, 0.0)
+            first_scratch = int(0)
+            rays = int(0)
+            alpha = float(0.0)
+            traveled = float(ray.start)  # from the camera to the last surface, along the path
+            depth = int(0)
+            passes = int(0)
+            pdf = float(-1.0)
+            phi = float(0.0)
+            instance = int(-1)
+            origin = start  # of the straight segment that the path is on
+            gone = float(0.0)  # part of it that lies behind
+            alive = int(1)
+            while alive == 1:
+                entered = depth
+                lit = wp.vec3(0.0, 0.0, 0.0)  # what this surface reflects
+                s = Surface()
+                s.face = -1
+                known = wp.vec4(0.0, 0.0, 0.0, 0.0)
+                last = int(0)
+                if wp.static(not (key.emission or key.mesh_lights or key.opacity)):
+                    if depth >= window.max_depth:
+                        # nothing but lights can be found: look for geometry only where there is one to hide
+                        last = 1
+                        known = seen(
+                            light_arrays,
+                            lights,
+                            starts,
+                            links,
+                            origin,
+                            direction,
+                            gone,
+                            1.0e30,
+                            instance,
+                            lobe,
+                            pdf,
+                            phi,
+                            depth,
+                        )
+                if last == 0 or known[0] + known[1] + known[2] > 0.0:
+                    s = intersect(g, start, direction, reach)
+                    rays += 1
+                    limit = gone + wp.where(s.face >= 0, s.t, reach)
+                    known = seen(
+                        light_arrays,
+                        lights,
+                        starts,
+                        links,
+                        origin,
+                        direction,
+                        gone,
+                        limit,
+                        instance,
+                        lobe,
+                        pdf,
+                        phi,
+                        depth,
+                    )
+                found = wp.cw_mul(throughput, wp.vec3(known[0], known[1], known[2]))
+                if depth == 0 and known[3] > 0.0:
+                    alpha = 1.0
+                alive = 0
+                if s.face >= 0 and last == 0:
+                    wo = -direction
+                    m = arrays.materials[s.material]
+                    s.ns = interpolate_normal(g, s, wo)
+                    s.uv = interpolate_uv(g, s)
+                    pair = 2 + (depth + passes) * (wp.static(OWN_PAIRS) + nlights)
+                    u_lobe = sobol_2d(index, pair, seed)
+                    u_base = sobol_2d(index, pair + 1, seed)
+                    u_more = sobol_2d(index, pair + 2, seed)
+                    through = float(0.0)
+                    if wp.static(key.opacity):
+                        if passes < wp.static(MOST_PASSES):
+                            through = 1.0 - opacity_at(arrays, m, s.uv)
+                    if wp.static(key.opacity) and sobol_2d(index, pair + 3, seed)[0] < through:
+                        throughput = wp.cw_mul(throughput, pass_through(m, base_at(g, arrays, m, s), s, wo))
+                        passes += 1
+                        gone += s.t
+                        start = s.p - s.offset * s.ng
+                        alive = 1
+                    else:
+                        if depth == 0:
+                            alpha = 1.0
+                        traveled += gone + s.t
+                        glowing = glow(
+                            arrays, light_arrays, lights, m, s, origin, direction, gone + s.t, lobe, pdf, phi
+                        )
+                        found += wp.cw_mul(throughput, glowing)
+                        if depth < window.max_depth:
+                            tangent = wp.vec3(0.0, 0.0, 0.0)
+                            if wp.static(key.directed):
+                                tangent = interpolate_tangent(g, s)
+                            frame = frame_at(g, arrays, m, s, tangent, wo)
+                            base = base_at(g, arrays, m, s)
+                            # edges of the footprint in the triangle's plane
+                            step_x = camera.right * (camera.pixel_x * camera.footprint)
+                            step_y = camera.up * (-camera.pixel_y * camera.footprint)
+                            if wp.static(not key.orthographic):
+                                far = traveled / wp.length(ray.raw)
+                                step_x = step_x * far
+                                step_y = step_y * far
+                            if depth > 0:
+                                step_y = frame.y * wp.length(step_y)
+                                step_x = frame.x * wp.length(step_x)
+                            step_x = footprint_step(step_x, direction, s.ng)
+                            step_y = footprint_step(step_y, direction, s.ng)
+                            lobe = choose(
+                                g, layers, tables, m, s, frame, base, wo, through, step_x, step_y, u_lobe, u_more
+                            )
+                            if depth == 0:
+                                first_scratch = lobe.scratch
+                            p = lifted(g, s)
+                            instance = s.instance
+                            lit = direct(
+                                g,
+                                arrays,
+                                tables,
+                                light_arrays,
+                                lights,
+                                starts,
+                                links,
+                                p,
+                                s.ng,
+                                instance,
+                                lobe,
+                                index,
+                                pair + wp.static(OWN_PAIRS),
+                                seed,
+                            )
+                            rays += nlights
+                            lit = wp.cw_mul(throughput, lit)
+                            out = scatter(tables, lobe, s, u_base, u_more[1])
+                            step = wp.cw_mul(throughput, out.weight)
+                            if depth == 0:
+                                film.normal[line, column] = film.normal[line, column] + frame.n
+                                film.albedo[line, column] = film.albedo[line, column] + base_albedo(
+                                    base, to_local(frame, wo)
+                                )
+                                film.position[line, column] = film.position[line, column] + s.p
+                                away = -wp.dot(s.p - ray.origin, camera.back)
+                                film.depth[line, column] = film.depth[line, column] + away
+                                film.hits[line, column] = film.hits[line, column] + 1
+                                if away < film.nearest[line, column]:
+                                    film.nearest[line, column] = away
+                                    film.instance[line, column] = s.instance
+                            depth += 1
+                            keep = float(1.0)
+                            if wp.static(key.path):
+                                if depth >= 4:
+                                    largest = wp.max(wp.max(step[0], step[1]), step[2])
+                                    keep = wp.clamp(largest / wp.max(camera.exposure, 1.0e-20), 0.02, 0.95)
+                            if out.alive == 1 and u_more[0] < keep:
+                                throughput = step / keep
+                                direction = out.direction
+                                start = p
+                                origin = p
+                                gone = 0.0
+                                reach = 1.0e10
+                                pdf = out.pdf
+                                phi = out.phi
+                                alive = 1
+                color += found + lit
+                # light and glow that the camera sees directly belong to no lobe
+                part = lit + wp.where(entered > 0, 1.0, 0.0) * found
+                if first_scratch == 1:
+                    part_scratch += part
+                else:
+                    part_base += part
+
+            if wp.isfinite(color[0] + color[1] + color[2]):
+                film.color[line, column] = film.color[line, column] + color
+                film.base[line, column] = film.base[line, column] + part_base
+                film.scratches[line, column] = film.scratches[line, column] + part_scratch
+                y = luminance(color)
+                film.square[line, column] = film.square[line, column] + y * y
+            else:
+                film.invalid[line, column] = film.invalid[line, column] + 1
+            film.alpha[line, column] = film.alpha[line, column] + alpha
+            film.rays[line, column] = film.rays[line, column] + rays
+
+    return render_pixels

@@ -1,0 +1,95 @@
+"""EffectPlan: which effects a scene calls for, why, and with what settings it is rendered."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any
+
+from ..scene import Settings
+from ..scene.checks import put
+
+
+@dataclass(frozen=True)
+class EffectChoice:
+    """One effect on or off; ``reason`` names what calls for it, ``prims`` the paths; ``forced`` by the user."""
+
+    enabled: bool
+    reason: str
+    prims: tuple[str, ...] = ()
+    forced: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class TablePlan:
+    """One profile table to simulate.
+
+    Attributes:
+        profile: a ``profiles.Profile`` scaled to its aspect; fresnel: an ``optics`` reflector, None for a mirror.
+        max_bounces: 1 where light cannot meet the profile twice.
+        users: the layers that share it.
+    """
+
+    key: tuple[Any, ...]
+    profile: Any
+    fresnel: Any
+    max_bounces: int
+    users: tuple[str, ...]
+    resolution: int = 256
+    rays: int = 128
+
+
+@dataclass(frozen=True, eq=False)
+class LayerPlan:
+    """A sublayer to render: its table (-1: a diffuse scratch), and whether the base's diffuse term is seen through it."""
+
+    sublayer: Any
+    table: int
+    keeps_diffuse: bool
+    weight: float
+    diffuse: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, eq=False)
+class EffectPlan:
+    """What to simulate for a scene and how.
+
+    Attributes:
+        effects: name -> EffectChoice, in the order of ``explain``.
+        settings: every value decided. size: (width, height) of the whole image in pixels.
+        window: (x0, x1, y0, y1) of the pixels rendered, the maxima exclusive.
+        layers: for each material of the scene its sublayers. tables: what to simulate.
+        warnings: what cannot be honoured. seconds: how long planning took.
+    """
+
+    effects: Mapping[str, EffectChoice]
+    settings: Settings
+    size: tuple[int, int]
+    window: tuple[int, int, int, int]
+    layers: tuple[tuple[LayerPlan, ...], ...] = ()
+    tables: tuple[TablePlan, ...] = ()
+    warnings: tuple[str, ...] = ()
+    seconds: float = 0.0
+    numbers: Mapping[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        put(self, effects=MappingProxyType(dict(self.effects)), numbers=MappingProxyType(dict(self.numbers)))
+
+    def on(self, name: str) -> bool:
+        """Whether an effect is enabled; KeyError for a name that is no effect."""
+        return self.effects[name].enabled
+
+    def explain(self) -> str:
+        """The plan as a table: effect, on or off, why."""
+        width = max(len(n) for n in self.effects)
+        lines = [f"{'effect':<{width}}  state  why", f"{'-' * width}  -----  ---"]
+        for name, choice in self.effects.items():
+            state = ("on" if choice.enabled else "off") + ("!" if choice.forced else "")
+            prims = (
+                f"  [{', '.join(choice.prims[:3])}{', ...' if len(choice.prims) > 3 else ''}]" if choice.prims else ""
+            )
+            lines.append(f"{name:<{width}}  {state:<5}  {choice.reason}{prims}")
+        if any(c.forced for c in self.effects.values()):
+            lines.append("! forced by the user or the stage")
+        lines += [f"{name}: {text}" for name, text in self.numbers.items()]
+        lines += [f"warning: {w}" for w in self.warnings]
+        return "\n".join(lines)

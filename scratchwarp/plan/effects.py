@@ -1,0 +1,189 @@
+"""The effects, and how each is decided. A new effect is one line in EFFECTS and the function it names.
+
+A rule gets the facts of a scene and answers (calls for it, reason, prims).
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..lights.registry import MODELS
+from ..scene import Material, PreviewSurface, Scene, ScratchSurface, Settings, TextureInput
+from ..scratches import KINDS
+from .choice import LayerPlan, TablePlan
+from .occlusion import can_occlude
+
+Answer = tuple[bool, str, tuple[str, ...]]
+
+
+@dataclass(frozen=True, eq=False)
+class Facts:
+    """What rules look at: the scene, its used materials, the planned layers and tables, the decided settings."""
+
+    scene: Scene
+    settings: Settings
+    materials: tuple[Material, ...]
+    layers: tuple[tuple[LayerPlan, ...], ...]
+    tables: tuple[TablePlan, ...]
+
+    @property
+    def every(self) -> list[LayerPlan]:
+        """All sublayers of all materials."""
+        return [p for own in self.layers for p in own]
+
+
+def _answer(prims: list[str], on: str, off: str) -> Answer:
+    unique = tuple(dict.fromkeys(prims))
+    return bool(unique), on if unique else off, unique
+
+
+def _surfaces(f: Facts, test: Callable[[Any], bool], on: str, off: str) -> Answer:
+    return _answer([m.path for m in f.materials if test(m.surface)], on, off)
+
+
+def _scratches(f: Facts) -> Answer:
+    return _answer([p.sublayer.layer.label for p in f.every], "layers with visible scratches", "no layer has scratches")
+
+
+def _distribution(kind: str) -> Callable[[Facts], Answer]:
+    def rule(f: Facts) -> Answer:
+        found = [p.sublayer.layer.label for p in f.every if p.sublayer.distribution == kind]
+        return _answer(found, f"layers laid out as {kind}", f"no layer laid out as {kind}")
+
+    return rule
+
+
+def _tables(f: Facts) -> Answer:
+    found = [u for t in f.tables for u in t.users]
+    return _answer(found, f"{len(f.tables)} profile tables to simulate", "no layer needs a profile table")
+
+
+def _interreflection(f: Facts) -> Answer:
+    found = [u for t in f.tables if t.max_bounces > 1 for u in t.users]
+    return _answer(found, "light can meet these profiles more than once", "no profile sends light into itself twice")
+
+
+def _fresnel(f: Facts) -> Answer:
+    found = [u for t in f.tables if t.fresnel is not None for u in t.users]
+    return _answer(found, "reflectance varies along the cone: slices at 0, 60, 90 degrees", "mirrors need one table")
+
+
+def _diffuse_scratches(f: Facts) -> Answer:
+    found = [p.sublayer.layer.label for p in f.every if p.table < 0]
+    return _answer(found, "Lambert scratches", "no Lambert scratch")
+
+
+def _diffraction(f: Facts) -> Answer:
+    asked = [m.path for m in f.materials if m.wave is not None]
+    if asked:
+        return False, "asked for by ScratchWaveAPI, rendered by geometric optics in this version", tuple(asked)
+    return False, "no material has ScratchWaveAPI", ()
+
+
+def _grooves(f: Facts) -> Answer:
+    asked = [p.sublayer.layer.label for p in f.every if p.sublayer.layer.model == "groove"]
+    if asked:
+        return False, "asked for by model groove, rendered by profile tables in this version", tuple(asked)
+    return False, "no layer asks for resolved grooves", ()
+
+
+def _textured(s: Any) -> bool:
+    return any(isinstance(v, TextureInput) for v in vars(s).values())
+
+
+def _positive(value: Any) -> bool:
+    return isinstance(value, TextureInput) or bool(np.any(np.asarray(value) > 0.0))
+
+
+def _transparent(s: Any) -> bool:
+    return isinstance(s, PreviewSurface) and (isinstance(s.opacity, TextureInput) or s.opacity < 1.0)
+
+
+def _directed(f: Facts) -> Answer:
+    ids = [m.path for m, own in zip(f.scene.materials, f.layers, strict=True) if own]
+    ids += [m.path for m in f.materials if isinstance(m.surface, ScratchSurface) and m.surface.anisotropy != 0.0]
+    return _answer(ids, "these materials have a direction: tangents are built", "no material has a direction")
+
+
+def _light(kind: str, record: type) -> Callable[[Facts], Answer]:
+    def rule(f: Facts) -> Answer:
+        found = [light.path for light in f.scene.lights if type(light) is record]
+        return _answer(found, f"{len(found)} of them", f"no {kind} light")
+
+    return rule
+
+
+def _shadows(f: Facts) -> Answer:
+    casting = [light.path for light in f.scene.lights if light.shadow]
+    if not casting:
+        return False, "no light casts shadows", ()
+    if not can_occlude(f.scene):
+        return False, "nothing can occlude: no geometry, or one flat or convex body", ()
+    return True, "geometry may stand between surfaces and these lights", tuple(casting)
+
+
+def _links(f: Facts) -> Answer:
+    found = [light.path for light in f.scene.lights if light.linked is not None]
+    return _answer(found, "these lights pick what they light", "every light lights everything")
+
+
+def _multipliers(f: Facts) -> Answer:
+    found = [light.path for light in f.scene.lights if light.diffuse != 1.0 or light.specular != 1.0]
+    return _answer(found, "diffuse or specular multipliers other than 1", "all multipliers are 1")
+
+
+def _indirect(f: Facts) -> Answer:
+    on = f.settings.integrator == "path"
+    return on, "integrator path" if on else "integrator direct", ()
+
+
+def _lens(f: Facts) -> Answer:
+    c = f.scene.camera
+    if c.lens_radius <= 0.0 or c.focus_distance <= 0.0:
+        return False, "the camera is a pinhole", ()
+    if not f.scene.options.depth_of_field:
+        return False, "the stage's render settings disable depth of field", ()
+    return True, f"aperture radius {c.lens_radius:.3g} m", (c.path,)
+
+
+EFFECTS: dict[str, Callable[[Facts], Answer]] = {
+    "scratches": _scratches,
+    **{f"scratches.{kind}": _distribution(kind) for kind in KINDS},
+    "scratches.table": _tables,
+    "scratches.interreflection": _interreflection,
+    "scratches.fresnel": _fresnel,
+    "scratches.diffuse": _diffuse_scratches,
+    "diffraction": _diffraction,
+    "grooves": _grooves,
+    "base.preview": lambda f: _surfaces(
+        f, lambda s: isinstance(s, PreviewSurface), "UsdPreviewSurface bases", "no UsdPreviewSurface base"
+    ),
+    "base.measured": lambda f: _surfaces(
+        f, lambda s: isinstance(s, ScratchSurface), "ScratchSurface bases", "no ScratchSurface base"
+    ),
+    "base.direction": _directed,
+    "base.textures": lambda f: _surfaces(f, _textured, "inputs read from textures", "no input reads a texture"),
+    "base.normalMaps": lambda f: _surfaces(
+        f, lambda s: isinstance(s, PreviewSurface) and s.normal is not None, "normal maps", "no normal map"
+    ),
+    "base.displayColor": lambda f: _answer(
+        [m.path for m in f.materials if m.uses_display_color],
+        "surfaces without a material",
+        "every surface has a material",
+    ),
+    "base.opacity": lambda f: _surfaces(f, _transparent, "opacity below 1", "every surface is opaque"),
+    "base.emission": lambda f: _surfaces(
+        f,
+        lambda s: isinstance(s, PreviewSurface) and _positive(s.emissive_color),
+        "emissive surfaces",
+        "no surface glows",
+    ),
+    **{f"lights.{model.name}": _light(model.name, record) for record, model in MODELS.items()},
+    "lights.links": _links,
+    "lights.multipliers": _multipliers,
+    "shadows": _shadows,
+    "indirect": _indirect,
+    "lens": _lens,
+}

@@ -1,0 +1,136 @@
+"""The scene's layers -> sublayers to render and the tables they share."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from .. import optics
+from ..optics import metals
+from ..scene import Layer, Material, Scene, ScratchSurface, TextureInput
+from ..scratches.expand import sublayers
+from .choice import LayerPlan, TablePlan
+from .profiles import cross_section
+
+_MODELS = {"exact": "exact", "schlick": "schlick", "lazanyi": "lazanyi", "lazanyiError": "lazanyi-error"}
+
+
+def conductor_index(surface: Any) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+    """(eta, k) for R, G, B of a ScratchSurface or a layer: the named metal's, or its own."""
+    if surface.metal != "custom":
+        eta, k = metals.rgb(surface.metal)
+        return (float(eta[0]), float(eta[1]), float(eta[2])), (float(k[0]), float(k[1]), float(k[2]))
+    return tuple(surface.eta), tuple(surface.k)
+
+
+def _constant(value: Any, scene: Scene) -> tuple[float, float, float]:
+    """A colour or scalar input as one colour; a texture counts with its mean."""
+    if isinstance(value, TextureInput):
+        texel = scene.textures[value.texture].pixels.reshape(-1, 4).mean(0) * value.scale + value.bias
+        if value.channel != "rgb":
+            texel = np.full(3, texel["rgba".index(value.channel)])
+    else:
+        texel = np.broadcast_to(np.asarray(value, np.float64), 3)
+    r, g, b = (float(c) for c in texel[:3])
+    return r, g, b
+
+
+def _unit(color: tuple[float, ...]) -> tuple[float, ...]:
+    return tuple(min(max(c, 0.0), 1.0) for c in color)
+
+
+def reflector(scene: Scene, material: Material, layer: Layer) -> tuple[Any, bool]:
+    """(what the scratch's facets reflect by, or None for a Lambert scratch; whether the base's diffuse term stays).
+
+    A scratch that inherits takes its base's Fresnel reflectance. A UsdPreviewSurface gives F0 by its workflow and a
+    dielectric its index; the diffuse term under a dielectric is common to base and scratch (Raymond 2016, Figure 12c).
+    """
+    simple = "schlick" if layer.fresnel == "schlick" else "exact"
+    if layer.material == "diffuse":
+        return None, False
+    if layer.fresnel == "mirror":
+        return optics.Mirror(), False
+    if layer.material == "conductor":
+        return optics.Conductor(*conductor_index(layer), _MODELS[layer.fresnel]), False
+    if layer.material == "dielectric":
+        return optics.Dielectric(layer.ior, simple), True
+    surface = material.surface
+    if isinstance(surface, ScratchSurface):
+        if surface.base == "conductor":
+            return optics.Conductor(*conductor_index(surface), _MODELS[layer.fresnel]), False
+        return (optics.Dielectric(surface.ior, simple), True) if surface.base == "dielectric" else (None, False)
+    if surface.use_specular_workflow:
+        return optics.Schlick(_unit(_constant(surface.specular_color, scene))), True
+    metallic = min(max(_constant(surface.metallic, scene)[0], 0.0), 1.0)
+    if metallic == 0.0:
+        return optics.Dielectric(max(surface.ior, 1e-3), simple), True
+    r2 = ((1.0 - surface.ior) / (1.0 + surface.ior)) ** 2
+    f0 = _unit(tuple(r2 + (c - r2) * metallic for c in _constant(surface.diffuse_color, scene)))
+    return (optics.Mirror() if min(f0) >= 1.0 else optics.Schlick(f0)), metallic < 1.0
+
+
+def lobe_weight(fresnel: Any) -> float:
+    """About what a scratch reflects, for choosing among lobes: the reflectance at 45 degrees, a little light left."""
+    if isinstance(fresnel, optics.Mirror):
+        return 1.0
+    return float(max(np.max(fresnel.reflectance(math.sqrt(0.5))), 0.02))
+
+
+def plan_layers(
+    scene: Scene, allowed: Any, settings: Any
+) -> tuple[tuple[tuple[LayerPlan, ...], ...], tuple[TablePlan, ...], tuple[str, ...]]:
+    """(sublayers of each material, tables to simulate, warnings); ``allowed(distribution)``: whether it may be on."""
+    tables: dict[tuple[Any, ...], int] = {}
+    plans: list[dict[str, Any]] = []
+    warnings: list[str] = []
+    every: list[tuple[LayerPlan, ...]] = []
+    used = sorted({m for i in scene.instances for m in i.materials})
+    for number, material in enumerate(scene.materials):
+        own: list[LayerPlan] = []
+        for layer in material.layers if number in used else ():
+            if layer.model in ("diffraction", "groove", "normalMap"):
+                warnings.append(f"{layer.label}: model {layer.model} is rendered by its profile table for now")
+            if layer.depth_variation > 0.0:
+                warnings.append(f"{layer.label}: depthVariation {layer.depth_variation:g} is not honoured yet")
+            subs = [s for s in sublayers(layer) if allowed(s.distribution)]
+            if not subs:
+                continue
+            fresnel, keeps = reflector(scene, material, layer)
+            if fresnel is None:
+                color = layer.diffuse_color
+                if layer.material != "diffuse" and isinstance(material.surface, ScratchSurface):
+                    color = material.surface.color
+                own += [LayerPlan(s, -1, False, max(*color, 0.02), color) for s in subs]
+                continue
+            if isinstance(material.surface, ScratchSurface) is False and layer.material == "inherit":
+                textured = [
+                    n
+                    for n in ("diffuse_color", "metallic", "specular_color")
+                    if isinstance(getattr(material.surface, n), TextureInput)
+                ]
+                if textured and not isinstance(fresnel, optics.Dielectric | optics.Mirror):
+                    warnings.append(f"{layer.label}: scratches reflect by the mean of the textured {textured[0]}")
+            profile = cross_section(layer.profile, layer)
+            aspect = layer.depth / layer.width
+            points = b"" if layer.profile.points is None else layer.profile.points.tobytes()
+            p = layer.profile
+            key = (p.shape, points, p.rim, p.rim_width, p.periodic, p.parameters, round(aspect, 12), fresnel)
+            if key not in tables:
+                tables[key] = len(plans)
+                flat = p.rim == 0.0 and (p.shape == "flat" or aspect == 0.0)
+                plans.append(
+                    {
+                        "profile": profile,
+                        "fresnel": None if isinstance(fresnel, optics.Mirror) else fresnel,
+                        "max_bounces": 1 if flat else 2000,
+                        "users": [],
+                    }
+                )
+            plans[tables[key]]["users"].append(layer.label)
+            own += [LayerPlan(s, tables[key], keeps, lobe_weight(fresnel)) for s in subs]
+        every.append(tuple(own))
+    made = tuple(
+        TablePlan(key, users=tuple(dict.fromkeys(row.pop("users"))), **row)
+        for key, row in zip(tables, plans, strict=True)
+    )
+    return tuple(every), made, tuple(dict.fromkeys(warnings))

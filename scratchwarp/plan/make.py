@@ -1,0 +1,56 @@
+"""make_plan: walk the scene once and decide every effect."""
+
+import time
+
+from ..scene import Scene, Settings
+from .choice import EffectChoice, EffectPlan
+from .effects import EFFECTS, Facts
+from .layers import plan_layers
+from .resolve import resolve
+
+
+def make_plan(scene: Scene, settings: Settings | None = None) -> EffectPlan:
+    """Decide each effect on or off with a reason that names the prim, and every setting.
+
+    Raises ValueError on an unknown effect name, or a layer whose profile cannot be simulated.
+    """
+    start = time.perf_counter()
+    decided, size, window = resolve(scene, settings or Settings())
+    forced = dict(decided.effects)
+    for name in forced:
+        if name not in EFFECTS:
+            raise ValueError(f"effects names {name!r}; the effects are {', '.join(EFFECTS)}")
+
+    def allowed(distribution: str) -> bool:
+        return forced.get("scratches", True) and forced.get(f"scratches.{distribution}", True)
+
+    layers, tables, warnings = plan_layers(scene, allowed, decided)
+    used = sorted({m for instance in scene.instances for m in instance.materials})
+    facts = Facts(scene, decided, tuple(scene.materials[i] for i in used), layers, tables)
+    effects = {}
+    for name, rule in EFFECTS.items():
+        enabled, reason, prims = rule(facts)
+        if name in forced:
+            reason = f"forced {'on' if forced[name] else 'off'}; by itself {'on' if enabled else 'off'}: {reason}"
+            enabled = forced[name]
+        effects[name] = EffectChoice(enabled, reason, prims, name in forced)
+    waved = effects["diffraction"].prims
+    warnings += tuple(f"{prim}: ScratchWaveAPI is rendered by geometric optics in this version" for prim in waved)
+    x0, x1, y0, y1 = window
+    numbers = {
+        "image": f"{size[0]} x {size[1]} pixels, {x1 - x0} x {y1 - y0} rendered, {decided.spp} samples each, "
+        f"filter {decided.filter} {decided.filter_width:g} pixels",
+        "geometry": f"{scene.triangles} triangles in {len(scene.instances)} instances",
+        "tables": f"{len(tables)} to simulate, {sum(len(own) for own in layers)} sets of scratches",
+    }
+    return EffectPlan(
+        effects=effects,
+        settings=decided,
+        size=size,
+        window=window,
+        layers=layers,
+        tables=tables,
+        warnings=warnings,
+        numbers=numbers,
+        seconds=time.perf_counter() - start,
+    )

@@ -1,0 +1,65 @@
+"""Can any geometry stand between a surface and a light? If not, no shadow ray is traced."""
+
+import numpy as np
+
+from ..scene import Mesh, Scene
+
+# Flatness of an edge or a plane, relative to the mesh's size.
+FLAT = 1e-6
+
+
+def is_convex(mesh: Mesh) -> bool:
+    """Whether a mesh is one flat patch or one closed convex body.
+
+    A closed connected surface without boundary on which every edge is convex is convex (Tietze, Nakajima).
+    """
+    points, index = np.unique(mesh.points, axis=0, return_inverse=True)
+    triangles = index.ravel()[mesh.triangles]
+    triangles = triangles[(triangles != np.roll(triangles, 1, axis=1)).all(1)]
+    if not len(triangles):
+        return True
+    a, b, c = (points[triangles[:, k]] for k in range(3))
+    normals = np.cross(b - a, c - a)
+    size = float(np.ptp(points, axis=0).max())
+    length = np.linalg.norm(normals, axis=1, keepdims=True)
+    normals = np.divide(normals, length, out=np.zeros_like(normals), where=length > 0)
+    first = normals[length.argmax()]
+    if np.abs((points - a[length.argmax()]) @ first).max() <= FLAT * size:
+        return True
+
+    m = len(triangles)
+    edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    opposite = np.concatenate([triangles[:, 2], triangles[:, 0], triangles[:, 1]])
+    owner = np.tile(np.arange(m), 3)
+    key = np.sort(edges, axis=1)
+    order = np.lexsort((key[:, 1], key[:, 0]))
+    key, opposite, owner = key[order], opposite[order], owner[order]
+    if len(key) % 2 or not (key[0::2] == key[1::2]).all() or (key[1:-1:2] == key[2::2]).all(1).any():
+        return False  # a boundary or more than two triangles at an edge
+    one, two = owner[0::2], owner[1::2]
+    height = ((points[opposite[1::2]] - points[key[0::2, 0]]) * normals[one]).sum(1)
+    if (height > FLAT * size).any():
+        return False
+    # one body: join triangles over their edges
+    group = np.arange(m)
+    while True:
+        low = np.minimum(group[one], group[two])
+        joined = group.copy()
+        np.minimum.at(joined, one, low)
+        np.minimum.at(joined, two, low)
+        joined = joined[joined]
+        if (joined == group).all():
+            break
+        group = joined
+    return bool((group == group[0]).all()) and len(points) - len(key) // 2 + m == 2
+
+
+def can_occlude(scene: Scene) -> bool:
+    """False when every light that a point can see reaches it: no geometry, or one flat or convex body."""
+    shown = [i for i in scene.instances if len(scene.meshes[i.mesh].triangles)]
+    if not shown:
+        return False
+    if len(shown) > 1:
+        return True
+    mesh = scene.meshes[shown[0].mesh]
+    return len(mesh.triangles) > 200_000 or not is_convex(mesh)
