@@ -1,1 +1,29 @@
+"""USD stage to Scene; the only importer of pxr.
 
+Importing this package registers scratchwarp's schemas with USD, which must happen before the first stage is opened.
+
+Files, from the outside in:
+    read            read(path) -> Scene
+    open            a file to an open stage, or what is wrong with it
+    reading         what every part needs to know, and the warnings
+    options         render settings, products and vars
+    camera          the camera
+    traverse        which prims can be seen, and where: instances, point instancers, visibility, purposes
+    geometry        which reader reads which geometric prim
+    mesh            UsdGeomMesh; triangulate, primvar, normals are its parts
+    place           instances; binding says which material goes where
+    material        UsdShadeMaterial: preview, scratch_surface, texture_input, texture, layer
+    curves          explicit scratches; curve_basis samples them
+    illuminate      all lights; lights says which function reads which type: light_near, light_far, light_shape
+    color           colours in linear Rec.709
+    complain        what an author should hear of the scene as a whole
+    validation*     the rules that stages are checked against
+"""
+
+from scratchwarp.usd_schemas import register
+
+from .read import PURPOSES, read
+
+register()
+
+__all__ = ["PURPOSES", "read"]

@@ -1,0 +1,78 @@
+"""The meshes of a stage, each read once, and where they are placed."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from pxr import Usd, UsdGeom
+
+from scratchwarp.scene import Mesh
+
+from .mesh import read_mesh
+from .primvar import uv_primvars
+from .reading import Reading, shared_path
+from .traverse import Placed
+
+READERS: dict[str, Callable[[Reading, Usd.Prim], Mesh | None]] = {"Mesh": read_mesh}
+"""Type name of a geometric prim -> its reader."""
+
+_INHERITED = ("displayColor", "tangents")
+
+
+@dataclass(frozen=True, eq=False)
+class Geometry:
+    """Meshes in object space and their placements: (placed prim, index of its mesh)."""
+
+    meshes: list[Mesh]
+    placements: list[tuple[Placed, int]]
+
+    def bounds(self) -> tuple[np.ndarray, np.ndarray] | None:
+        """Lower and upper corner of everything in world space [scene units]; None where there is nothing."""
+        boxes = [np.array([m.points[m.triangles].min((0, 1)), m.points[m.triangles].max((0, 1))]) for m in self.meshes]
+        corners = []
+        for placed, index in self.placements:
+            eight = np.stack(np.meshgrid(*boxes[index].T, indexing="ij"), axis=-1).reshape(-1, 3)
+            corners.append(eight @ placed.world[:3, :3].T + placed.world[:3, 3])
+        if not corners:
+            return None
+        every = np.concatenate(corners)
+        return every.min(0), every.max(0)
+
+
+def read_geometry(reading: Reading, places: Sequence[Placed]) -> Geometry:
+    """Read the geometric prims among ``places``; instances of one prototype share a mesh.
+
+    Types that cannot be rendered are left out with a warning.
+    """
+    found = Geometry([], [])
+    known: dict[tuple[str, ...], int | None] = {}
+    for placed in places:
+        prim = placed.prim
+        if not placed.included or not prim.IsA(UsdGeom.Gprim):
+            continue
+        reader = READERS.get(str(prim.GetTypeName()))
+        if reader is None:
+            if "ScratchCurvesAPI" not in prim.GetAppliedSchemas():
+                reading.warn(prim.GetPath(), f"geometry of type {prim.GetTypeName()} is not rendered")
+            continue
+        key = _key(prim)
+        if key not in known:
+            mesh = reader(reading, prim)
+            known[key] = None if mesh is None else len(found.meshes)
+            if mesh is not None:
+                found.meshes.append(mesh)
+        index = known[key]
+        if index is not None:
+            found.placements.append((placed, index))
+    return found
+
+
+def _key(prim: Usd.Prim) -> tuple[str, ...]:
+    """What a prim's mesh depends on: the prim (of the prototype) and inherited primvars from outside the prototype."""
+    if not prim.IsInstanceProxy():
+        return (str(prim.GetPath()),)
+    api = UsdGeom.PrimvarsAPI(prim)
+    inherited = [api.FindPrimvarWithInheritance(name) for name in _INHERITED] + uv_primvars(api)
+    owners = [p.GetAttr() for p in inherited if p and p.HasValue()]
+    outside = [str(a.GetPath()) for a in owners if not a.GetPrim().IsInstanceProxy()]
+    return (shared_path(prim), *outside)

@@ -1,0 +1,166 @@
+"""ScratchLayerAPI, ScratchProfile and ScratchWaveAPI to Layer, Profile and Wave."""
+
+from typing import Any
+
+import numpy as np
+from pxr import Sdf, Usd
+
+from scratchwarp.scene import Layer, Profile, StageError, Wave
+
+from .color import color
+from .curves import CurveSets
+from .reading import Reading
+
+_API = "ScratchLayerAPI:"
+_PREFIX = "scratch:layer:"
+_ANGLES = ("angle", "angleSpread", "curvature")
+_NUMBERS = {
+    "width": "width",
+    "depth": "depth",
+    "length": "length",
+    "coverage": "coverage",
+    "density": "density",
+    "pitch": "pitch",
+    "angle": "angle",
+    "angleSpread": "angle_spread",
+    "curvature": "curvature",
+    "widthVariation": "width_variation",
+    "depthVariation": "depth_variation",
+    "ior": "ior",
+}
+_TOKENS = {
+    "model": "model",
+    "distribution": "distribution",
+    "space": "space",
+    "material": "material",
+    "metal": "metal",
+    "fresnelModel": "fresnel",
+}
+_PROFILE_PARAMETERS = ("apex", "floorWidth", "sigma")
+_EXTRA = ("ends",)
+_UNHONOURED = ("maskTexture", "maskPrimvar", "orientationTexture", "orientationPrimvar", "normalTexture")
+
+
+def read_layers(reading: Reading, prim: Usd.Prim, curves: CurveSets) -> tuple[Layer, ...]:
+    """The enabled layers applied to a material, in cutting order: by ``order``, ties by name.
+
+    Values that no layer can have raise StageError, naming the prim, the layer and the value.
+    """
+    names = [s.removeprefix(_API) for s in prim.GetAppliedSchemas() if s.startswith(_API)]
+    enabled = [n for n in names if reading.value(prim, f"{_PREFIX}{n}:enabled", True)]
+    layers = [_layer(reading, prim, name, curves) for name in enabled]
+    return tuple(sorted(layers, key=lambda layer: (layer.order, layer.name)))
+
+
+def _layer(reading: Reading, prim: Usd.Prim, name: str, curves: CurveSets) -> Layer:
+    def get(attribute: str, otherwise: Any = None) -> Any:
+        return reading.value(prim, f"{_PREFIX}{name}:{attribute}", otherwise)
+
+    def colored(attribute: str) -> tuple[float, ...]:
+        found = prim.GetAttribute(f"{_PREFIX}{name}:{attribute}")
+        return tuple(color(reading, found, np.array(get(attribute), np.float64)).tolist())
+
+    where = f"{prim.GetPath()} layer {name!r}"
+    fields = {field: float(get(attribute)) for attribute, field in _NUMBERS.items()}
+    for attribute in _ANGLES:
+        fields[_NUMBERS[attribute]] = float(np.radians(fields[_NUMBERS[attribute]]))
+    for attribute in _UNHONOURED:
+        if _path_or_text(get(attribute)):
+            reading.warn(where, f"{_PREFIX}*:{attribute} is not honoured")
+    tokens = {field: str(get(attribute)) for attribute, field in _TOKENS.items()}
+    targets = prim.GetRelationship(f"{_PREFIX}{name}:curves").GetForwardedTargets()
+    if tokens["distribution"] == "curves" and not targets:
+        reading.warn(where, "distribution is curves but its relationship curves has no target; it has no scratches")
+    extra = tuple((attribute, get(attribute)) for attribute in _EXTRA)
+    try:
+        return Layer(
+            name=name,
+            prim=str(prim.GetPath()),
+            profile=_profile(reading, prim, name, where),
+            order=int(get("order")),
+            offset=_pair(get("offset")),
+            center=_pair(get("center")),
+            seed=int(get("seed")),
+            eta=tuple(float(v) for v in get("eta")),  # type: ignore[arg-type]
+            k=tuple(float(v) for v in get("k")),  # type: ignore[arg-type]
+            diffuse_color=colored("diffuseColor"),  # type: ignore[arg-type]
+            curves=curves.indices(where, targets, fields["width"], fields["depth"], tokens["space"]),
+            patterns=int(get("patterns")),
+            cross_angle=float(np.radians(get("crossAngle"))),
+            extra=extra,
+            **fields,
+            **tokens,  # type: ignore[arg-type]
+        )
+    except StageError:
+        raise
+    except ValueError as error:
+        raise StageError(f"{reading.path}: {error}") from None
+
+
+def _profile(reading: Reading, prim: Usd.Prim, name: str, where: str) -> Profile:
+    """The profile that a layer's relationship names; without one a V groove, with a warning."""
+    targets = prim.GetRelationship(f"{_PREFIX}{name}:profile").GetForwardedTargets()
+    if len(targets) > 1:
+        reading.warn(where, f"its profile has {len(targets)} targets; the first is used")
+    found = reading.stage.GetPrimAtPath(targets[0]) if targets else None
+    if found and found.GetTypeName() == "ScratchProfile":
+        return read_profile(reading, found)
+    reason = f"its profile {targets[0]} is no ScratchProfile" if targets else "has no profile"
+    reading.warn(where, f"{reason}; a V groove is used")
+    return Profile(path=str(prim.GetPath()))
+
+
+def read_profile(reading: Reading, prim: Usd.Prim) -> Profile:
+    """Read a ScratchProfile prim; StageError on NaN points and unknown shapes."""
+    shape = str(reading.value(prim, "scratch:shape"))
+    points = np.asarray(reading.value(prim, "scratch:points", []), np.float64).reshape(-1, 2)
+    try:
+        return Profile(
+            path=str(prim.GetPath()),
+            shape=shape,
+            points=points if len(points) else None,
+            rim=float(reading.value(prim, "scratch:rim")),
+            rim_width=float(reading.value(prim, "scratch:rimWidth")),
+            periodic=bool(reading.value(prim, "scratch:periodic")),
+            parameters=tuple((n, float(reading.value(prim, f"scratch:{n}"))) for n in _PROFILE_PARAMETERS),
+        )
+    except ValueError as error:
+        raise StageError(f"{reading.path}: {error}") from None
+
+
+def read_wave(reading: Reading, prim: Usd.Prim) -> Wave | None:
+    """ScratchWaveAPI's values, None where it is not applied."""
+    if "ScratchWaveAPI" not in prim.GetAppliedSchemas():
+        return None
+
+    def get(attribute: str) -> Any:
+        return reading.value(prim, f"scratch:wave:{attribute}")
+
+    columns = [np.asarray(get(f"ior:{c}"), np.float64) for c in ("wavelengths", "eta", "k")]
+    path = prim.GetPath()
+    ior = None
+    if len({len(c) for c in columns}) > 1:
+        reading.warn(path, "scratch:wave:ior's wavelengths, eta and k differ in length; they are ignored")
+    elif len(columns[0]):
+        ior = np.stack(columns, axis=1)
+    try:
+        return Wave(
+            coherence_radius=float(get("coherenceRadius")),
+            wavelength_range=_pair(get("wavelengthRange")),
+            samples=int(get("samples")),
+            ior=ior,
+            phase=str(get("phase")),
+            summation=str(get("summation")),
+            sampling=str(get("sampling")),
+            roughness=float(get("roughness")),
+        )
+    except ValueError as error:
+        raise StageError(f"{reading.path}: {path}: {error}") from None
+
+
+def _pair(values: Any) -> tuple[float, float]:
+    return float(values[0]), float(values[1])
+
+
+def _path_or_text(value: Any) -> str:
+    return value.path if isinstance(value, Sdf.AssetPath) else str(value or "")

@@ -1,0 +1,158 @@
+"""UsdGeomMesh to Mesh: topology, normals, uv sets, tangents, colours and material slots."""
+
+import numpy as np
+from pxr import Usd, UsdGeom, UsdShade
+
+from scratchwarp.scene import Mesh, StageError
+
+from .color import color
+from .normals import facets, normalized, smooth
+from .primvar import Corners, read_primvar, spread, uv_primvars
+from .reading import Reading
+from .triangulate import triangulate
+
+UV_SET = "st"
+SUBDIVIDED = "subdivision surface; its control cage is rendered with smooth normals"
+
+
+def read_mesh(reading: Reading, prim: Usd.Prim) -> Mesh | None:
+    """Read a UsdGeomMesh in object space; None, with a warning, when nothing of it can be rendered.
+
+    Slot 0 is the mesh's own material, slot i the i-th of ``material_subsets``. Raises StageError on a point that is not
+    finite.
+    """
+    mesh = UsdGeom.Mesh(prim)
+    path = str(prim.GetPath())
+    points = np.asarray(_array(mesh.GetPointsAttr(), reading), np.float64).reshape(-1, 3)
+    counts = np.asarray(_array(mesh.GetFaceVertexCountsAttr(), reading), np.int64)
+    indices = np.asarray(_array(mesh.GetFaceVertexIndicesAttr(), reading), np.int64)
+    if not len(points) or not len(counts):
+        reading.warn(path, "the mesh has no faces; it is left out")
+        return None
+    if counts.min() < 0 or counts.sum() != len(indices):
+        reading.warn(
+            path,
+            f"faceVertexCounts add up to {counts.sum()}, faceVertexIndices has {len(indices)}; the mesh is left out",
+        )
+        return None
+    if len(indices) and (indices.min() < 0 or indices.max() >= len(points)):
+        reading.warn(path, f"faceVertexIndices point outside 0..{len(points) - 1}; the mesh is left out")
+        return None
+    _check_points(path, points)
+
+    faces = _faces(reading, mesh, counts)
+    cut = triangulate(points, counts, indices, faces)
+    if len(cut.degenerate):
+        reading.warn(path, "faces without area are left out")
+    if not len(cut.corners):
+        reading.warn(path, "no face of the mesh has an area; it is left out")
+        return None
+    positions = cut.corners
+    if reading.value(prim, "orientation") == UsdGeom.Tokens.leftHanded:
+        positions = positions[:, ::-1]
+    corners = Corners(positions, indices[positions], cut.faces, len(indices), len(points), len(counts))
+
+    api = UsdGeom.PrimvarsAPI(prim)
+    return Mesh(
+        path=path,
+        points=points,
+        triangles=corners.points,
+        normals=_normals(reading, mesh, points, corners),
+        uvs=_uvs(reading, api, path, corners),
+        tangents=_tangents(reading, api, corners),
+        colors=_colors(reading, api, corners),
+        slots=_slots(reading, prim, corners),
+        faces=corners.faces,
+        double_sided=bool(reading.value(prim, "doubleSided", False)),
+    )
+
+
+def material_subsets(prim: Usd.Prim) -> list[UsdGeom.Subset]:
+    """The prim's face subsets that bind materials, in order."""
+    if not prim.IsA(UsdGeom.Imageable):
+        return []
+    return [
+        s
+        for s in UsdShade.MaterialBindingAPI(prim).GetMaterialBindSubsets()
+        if s.GetElementTypeAttr().Get() == UsdGeom.Tokens.face
+    ]
+
+
+def _array(attribute: Usd.Attribute, reading: Reading):
+    got = attribute.Get(reading.time)
+    return [] if got is None else got
+
+
+def _check_points(path: str, points: np.ndarray) -> None:
+    finite = np.isfinite(points).all(1)
+    if not finite.all():
+        first = int(np.argmin(finite))
+        raise StageError(f"{path}: points[{first}] is {tuple(points[first].tolist())}; every coordinate must be finite")
+
+
+def _faces(reading: Reading, mesh: UsdGeom.Mesh, counts: np.ndarray) -> np.ndarray:
+    """Faces to render: neither holes nor with fewer than three corners."""
+    keep = counts >= 3
+    path = mesh.GetPath()
+    if not keep.all():
+        reading.warn(path, "faces with fewer than three corners are left out")
+    holes = np.asarray(_array(mesh.GetHoleIndicesAttr(), reading), np.int64)
+    inside = (holes >= 0) & (holes < len(counts))
+    if not inside.all():
+        reading.warn(path, f"holeIndices point outside 0..{len(counts) - 1}; those are ignored")
+    keep[holes[inside]] = False
+    return np.flatnonzero(keep)
+
+
+def _normals(reading: Reading, mesh: UsdGeom.Mesh, points: np.ndarray, corners: Corners) -> np.ndarray | None:
+    """Authored normals of a polygonal mesh; smooth ones of a subdivision cage; None: the facets' own."""
+    if reading.value(mesh.GetPrim(), "subdivisionScheme") != UsdGeom.Tokens.none:
+        reading.warn(mesh.GetPath(), SUBDIVIDED)
+        return smooth(points, corners)
+    primvar = UsdGeom.PrimvarsAPI(mesh).GetPrimvar("normals")
+    if primvar and primvar.HasValue():
+        values = read_primvar(reading, primvar, corners, 3)
+    else:
+        values = spread(reading, mesh.GetNormalsAttr(), corners, 3, mesh.GetNormalsInterpolation())
+    if values is None:
+        return None
+    flat = facets(points, corners.points)
+    return normalized(values, np.broadcast_to(flat[:, None, :], values.shape))
+
+
+def _uvs(reading: Reading, api: UsdGeom.PrimvarsAPI, path: str, corners: Corners) -> dict[str, np.ndarray]:
+    """Every uv set by name; where none is called st, the first stands in for it."""
+    found = {}
+    for primvar in uv_primvars(api):
+        values = read_primvar(reading, primvar, corners, 2)
+        if values is not None:
+            found[str(primvar.GetPrimvarName())] = values
+    if found and UV_SET not in found:
+        first = next(iter(found))
+        reading.warn(path, f"has no primvars:{UV_SET}; primvars:{first} is used in its place")
+        found[UV_SET] = found[first]
+    return found
+
+
+def _tangents(reading: Reading, api: UsdGeom.PrimvarsAPI, corners: Corners) -> np.ndarray | None:
+    primvar = api.FindPrimvarWithInheritance("tangents")
+    return read_primvar(reading, primvar, corners, 3) if primvar and primvar.HasValue() else None
+
+
+def _colors(reading: Reading, api: UsdGeom.PrimvarsAPI, corners: Corners) -> np.ndarray | None:
+    primvar = api.FindPrimvarWithInheritance("displayColor")
+    if not (primvar and primvar.HasValue()):
+        return None
+    values = read_primvar(reading, primvar, corners, 3)
+    return None if values is None else color(reading, primvar.GetAttr(), values)
+
+
+def _slots(reading: Reading, prim: Usd.Prim, corners: Corners) -> np.ndarray:
+    slots = np.zeros(corners.face_count, np.int32)
+    for slot, subset in enumerate(material_subsets(prim), start=1):
+        faces = np.asarray(_array(subset.GetIndicesAttr(), reading), np.int64)
+        inside = (faces >= 0) & (faces < corners.face_count)
+        if not inside.all():
+            reading.warn(subset.GetPath(), f"indices point outside 0..{corners.face_count - 1}; those are ignored")
+        slots[faces[inside]] = slot
+    return slots[corners.faces]

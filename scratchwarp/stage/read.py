@@ -1,0 +1,119 @@
+"""read: a USD file to a Scene."""
+
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from pxr import Usd, UsdGeom
+
+from scratchwarp.scene import Camera, Scene
+
+from .camera import find_camera, framing_camera, read_camera
+from .complain import complain
+from .curves import CurveSets
+from .geometry import Geometry, read_geometry
+from .illuminate import read_lights
+from .material import Materials
+from .open import metres_per_unit, open_stage
+from .options import StageSettings, read_settings
+from .place import place_instances
+from .reading import Reading, TextureLoader, Warnings
+from .texture import Textures
+from .traverse import placed_prims
+
+PURPOSES = ("default", "render")
+
+
+def read(
+    path: str | Path,
+    frame: float | None = None,
+    camera: str | None = None,
+    purposes: Iterable[str] = PURPOSES,
+    load_texture: TextureLoader | None = None,
+    session_layer: str | Path | None = None,
+    mask: str | Iterable[str] | None = None,
+    render_settings: str | None = None,
+    warn: Callable[[str], None] | None = None,
+) -> Scene:
+    """Read a stage at one time.
+
+    Args:
+        path: a .usd, .usda, .usdc or .usdz file.
+        frame: time code; None reads every attribute at its earliest sample, or its default where it has none.
+        camera: path or name of the camera; None: the render settings', the primary, the first, else one that frames
+            the scene.
+        purposes: purposes to include besides default; the render settings' authored includedPurposes replace the two
+            given here by default.
+        load_texture: decodes image files, ``(path, colour space) -> [h, w, 4]``; None: textures give their fallback.
+        session_layer: file with opinions stronger than the stage's.
+        mask: prim paths to which the stage is limited, as a sequence or one string.
+        render_settings: path of a RenderSettings prim; None: the one that the stage names.
+        warn: called with each warning of the scene, at the end.
+
+    Raises StageError (a ValueError) when the input is at fault: the message names the file, or the prim and the value.
+    """
+    started = time.perf_counter()
+    warnings = Warnings()
+    stage = open_stage(path, warnings, session_layer, mask)
+    reading = Reading(
+        stage=stage,
+        time=Usd.TimeCode.EarliestTime() if frame is None else Usd.TimeCode(float(frame)),
+        path=str(path),
+        metres=metres_per_unit(path, stage),
+        warn=warnings,
+        load_texture=load_texture,
+    )
+    settings = read_settings(reading, render_settings)
+    reading = replace(reading, purposes=_purposes(tuple(purposes), settings))
+
+    places = placed_prims(reading)
+    geometry = read_geometry(reading, places)
+    view, origin = _camera(reading, find_camera(reading, camera, settings.camera), geometry, settings)
+    textures, curves = Textures(reading), CurveSets(reading, origin)
+    materials = Materials(reading, textures, curves)
+    instances = place_instances(reading, geometry, origin, materials, settings.binding_purposes)
+    complain(reading, geometry.meshes, instances, materials.records)
+    lit = read_lights(reading, places, origin, geometry.meshes, instances, materials, textures)
+    scene = Scene(
+        path=str(path),
+        meshes=tuple(lit.meshes),
+        instances=tuple(lit.instances),
+        materials=tuple(materials.records),
+        lights=tuple(lit.lights),
+        camera=view,
+        textures=tuple(textures.records),
+        curves=tuple(curves.records),
+        time=None if frame is None else float(frame),
+        origin=origin,
+        up=_up(stage),
+        options=settings.options,
+        warnings=warnings.lines(),
+        seconds=time.perf_counter() - started,
+    )
+    if warn is not None:
+        for sentence in scene.warnings:
+            warn(sentence)
+    return scene
+
+
+def _purposes(asked: tuple[str, ...], settings: StageSettings) -> tuple[str, ...]:
+    chosen = settings.purposes if asked == PURPOSES and settings.purposes is not None else asked
+    return ("default", *(p for p in chosen if p != "default"))
+
+
+def _up(stage: Usd.Stage) -> np.ndarray:
+    return np.array([0.0, 0.0, 1.0] if UsdGeom.GetStageUpAxis(stage) == UsdGeom.Tokens.z else [0.0, 1.0, 0.0])
+
+
+def _camera(
+    reading: Reading, prim: Usd.Prim | None, geometry: Geometry, settings: StageSettings
+) -> tuple[Camera, np.ndarray]:
+    """(the camera at the origin, its world position [m]); one that frames the scene where the stage has none."""
+    if prim is None:
+        reading.warn(reading.path, "the stage has no camera; one that frames the scene is used")
+        low, high = geometry.bounds() or (-np.ones(3), np.ones(3))
+        return framing_camera(low * reading.metres, high * reading.metres, _up(reading.stage))
+    view, origin = read_camera(reading, prim)
+    return (view if settings.options.depth_of_field else replace(view, lens_radius=0.0)), origin

@@ -1,0 +1,87 @@
+"""Reading: what every part of the reader needs to know, and the warnings it gathers."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from pxr import Usd, UsdGeom
+
+TextureLoader = Callable[[str, str], np.ndarray]
+"""(path, colour space) -> float32 [h, w, 4], row 0 at the top, linear Rec.709 or raw."""
+
+_NAMED = 3  # prims that a warning names before it counts the rest
+
+
+class Warnings:
+    """Sentences about prims, each said once: ``/A, /B and 7 more: what could not be honoured``."""
+
+    def __init__(self) -> None:
+        self._places: dict[str, dict[str, None]] = {}
+
+    def __call__(self, where: object, what: str) -> None:
+        """Say ``what`` of the prim ``where``."""
+        self._places.setdefault(what, {})[str(where)] = None
+
+    def lines(self) -> tuple[str, ...]:
+        """One sentence for each thing said, in order."""
+        found = []
+        for what, places in self._places.items():
+            names = list(places)
+            rest = len(names) - _NAMED
+            named = ", ".join(names[:_NAMED]) + (f" and {rest} more" if rest > 0 else "")
+            found.append(f"{named}: {what}")
+        return tuple(found)
+
+
+@dataclass(frozen=True, eq=False)
+class Reading:
+    """One reading of a stage at one time.
+
+    Attributes:
+        stage: the stage; time: what every attribute is read at.
+        path: the file, for messages.
+        metres: metersPerUnit.
+        purposes: purposes to include.
+        warn: ``warn(prim path, sentence)``.
+        load_texture: decodes an image file; None: textures give their fallback.
+        xforms: local-to-world matrices at ``time``, cached.
+    """
+
+    stage: Usd.Stage
+    time: Usd.TimeCode
+    path: str
+    metres: float
+    purposes: tuple[str, ...] = ("default", "render")
+    warn: Warnings = field(default_factory=Warnings)
+    load_texture: TextureLoader | None = None
+    xforms: UsdGeom.XformCache = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "xforms", UsdGeom.XformCache(self.time))
+
+    def world(self, prim: Usd.Prim) -> np.ndarray:
+        """Object to world in scene units, float64 [4, 4], column vectors."""
+        return np.array(self.xforms.GetLocalToWorldTransform(prim)).T
+
+    def value(self, prim: Usd.Prim, name: str, otherwise: Any = None) -> Any:
+        """The attribute's value at this time; where it has none (blocked) the schema's fallback, else ``otherwise``."""
+        attribute = prim.GetAttribute(name)
+        got = attribute.Get(self.time) if attribute else None
+        if got is None:
+            definition = prim.GetPrimDefinition().GetAttributeDefinition(name)
+            got = definition.GetFallbackValue() if definition else None
+        return otherwise if got is None else got
+
+    def number(self, prim: Usd.Prim, name: str, otherwise: float = 0.0) -> float:
+        """The same for a number: one that is not finite gives ``otherwise``, with a warning."""
+        got = float(self.value(prim, name, otherwise))
+        if not np.isfinite(got):
+            self.warn(prim.GetPath(), f"{name} is {got}; {otherwise:g} is used")
+            return otherwise
+        return got
+
+
+def shared_path(prim: Usd.Prim) -> str:
+    """A name that all instances of a prim have in common."""
+    return str(prim.GetPrimInPrototype().GetPath() if prim.IsInstanceProxy() else prim.GetPath())

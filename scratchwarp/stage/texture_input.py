@@ -1,0 +1,121 @@
+"""UsdUVTexture with its primvar reader and transform, to TextureInput."""
+
+from typing import Any
+
+import numpy as np
+from pxr import Usd, UsdShade
+
+from scratchwarp.scene import TextureInput
+
+from .color import space_of
+from .reading import Reading
+from .texture import Textures
+
+_WRAPS = ("black", "clamp", "repeat", "mirror")
+
+
+def read_texture_input(
+    reading: Reading, node: UsdShade.Shader, output: str, default: Any, textures: Textures, is_color: bool
+) -> Any:
+    """A TextureInput for ``output`` (rgb, r, g, b, a) of a UsdUVTexture.
+
+    When the image cannot be read: the authored ``fallback`` of that output, else ``default``. Wrapping that is not
+    authored is ``repeat``; ``useMetadata`` is ``black``, as UsdPreviewSurface has it for files without metadata.
+    """
+    path = node.GetPath()
+    if output not in ("rgb", "r", "g", "b", "a"):
+        reading.warn(path, f"outputs:{output} is none of a UsdUVTexture; the input's default is used")
+        return default
+    file = _source(node, "file")
+    asset = file.Get(reading.time) if file else None
+    space = _space(reading, node, file)
+    index = textures.index(path, asset, space)
+    if index < 0:
+        fallback = _get(reading, node, "fallback")
+        if fallback is None:
+            return default
+        channel = "rgba".index(output) if output != "rgb" else 0
+        return (
+            tuple(float(v) for v in fallback)[:3] if is_color and output == "rgb" else _one(fallback, channel, is_color)
+        )
+    uv_set, transform = _coordinates(reading, node)
+    return TextureInput(
+        texture=index,
+        channel=output,
+        scale=np.array(_get(reading, node, "scale", (1.0, 1.0, 1.0, 1.0)), np.float64),
+        bias=np.array(_get(reading, node, "bias", (0.0, 0.0, 0.0, 0.0)), np.float64),
+        wrap_s=_wrap(reading, node, "wrapS"),
+        wrap_t=_wrap(reading, node, "wrapT"),
+        transform=transform,
+        uv_set=uv_set,
+    )
+
+
+def _one(values: Any, channel: int, is_color: bool) -> Any:
+    value = float(values[channel])
+    return (value, value, value) if is_color else value
+
+
+def _source(node: UsdShade.Shader, name: str) -> Usd.Attribute | None:
+    """The attribute that gives an input its value, through interfaces of node graphs and materials."""
+    given = node.GetInput(name)
+    sources = given.GetValueProducingAttributes() if given else []
+    return sources[0] if sources else None
+
+
+def _get(reading: Reading, node: UsdShade.Shader, name: str, otherwise: Any = None) -> Any:
+    source = _source(node, name)
+    if source is None or UsdShade.Utils.GetType(source.GetName()) == UsdShade.AttributeType.Output:
+        return otherwise
+    got = source.Get(reading.time)
+    return otherwise if got is None else got
+
+
+def _space(reading: Reading, node: UsdShade.Shader, file: Usd.Attribute | None) -> str:
+    """sourceColorSpace, unless it is auto and the file attribute says more by itself."""
+    space = str(_get(reading, node, "sourceColorSpace", "auto"))
+    if space == "auto" and file is not None:
+        return space_of(file) or "auto"
+    return space
+
+
+def _wrap(reading: Reading, node: UsdShade.Shader, name: str) -> str:
+    wrap = str(_get(reading, node, name, "repeat"))
+    if wrap == "useMetadata":
+        return "black"
+    if wrap not in _WRAPS:
+        reading.warn(node.GetPath(), f"inputs:{name} is {wrap!r}; repeat is used")
+        return "repeat"
+    return wrap
+
+
+def _coordinates(reading: Reading, node: UsdShade.Shader) -> tuple[str, np.ndarray]:
+    """(uv set, matrix [2, 3]) of the nodes behind ``inputs:st``; transforms may follow one another."""
+    matrix = np.eye(3)
+    seen: set = set()
+    current, name = node, "st"
+    while True:
+        source = _source(current, name)
+        if source is None or UsdShade.Utils.GetType(source.GetName()) != UsdShade.AttributeType.Output:
+            if source is not None:
+                reading.warn(current.GetPath(), f"a constant inputs:{name} is not honoured; primvars:st is used")
+            return "st", matrix[:2]
+        current = UsdShade.Shader(source.GetPrim())
+        kind = str(current.GetShaderId() or "")
+        if kind == "UsdPrimvarReader_float2":
+            return str(_get(reading, current, "varname", "st") or "st"), matrix[:2]
+        if kind != "UsdTransform2d" or current.GetPath() in seen:
+            reading.warn(node.GetPath(), f"texture coordinates from {kind or source.GetPath()}; primvars:st is used")
+            return "st", matrix[:2]
+        seen.add(current.GetPath())
+        matrix = matrix @ _transform(reading, current)
+        name = "in"
+
+
+def _transform(reading: Reading, node: UsdShade.Shader) -> np.ndarray:
+    """UsdTransform2d: scale, then rotate counter-clockwise [degrees], then translate."""
+    sx, sy = (float(v) for v in _get(reading, node, "scale", (1.0, 1.0)))
+    tx, ty = (float(v) for v in _get(reading, node, "translation", (0.0, 0.0)))
+    turn = np.radians(float(_get(reading, node, "rotation", 0.0)))
+    c, s = np.cos(turn), np.sin(turn)
+    return np.array([[c * sx, -s * sy, tx], [s * sx, c * sy, ty], [0.0, 0.0, 1.0]])
