@@ -4,8 +4,6 @@ Scratch frame: omega = sin(theta) u + cos(theta) (sin(phi) v + cos(phi) n); azim
 a, cos a, 0), n = (0, 0, 1) in the shading frame.
 """
 
-# mypy: disable-error-code="call-overload, assignment"
-# (Warp's stubs give vector differences the type int)
 import warp as wp
 
 

@@ -4,8 +4,6 @@ Source: the permuted congruential output function of O'Neill 2014 (PCG, RXS-M-XS
 2020 recommend ("Hash Functions for GPU Rendering").
 """
 
-# mypy: disable-error-code="operator"
-# (Warp's stubs lack shifts of unsigned integers)
 import warp as wp
 
 _PCG_MULTIPLIER = wp.constant(wp.uint32(747796405))

@@ -6,8 +6,6 @@ Lambda is (s / w_z - 1) / 2. Sources: Trowbridge and Reitz 1975; Heitz 2014 (Smi
 and Benyoub 2023 (visible normals by a spherical cap).
 """
 
-# mypy: disable-error-code="call-overload, index, return-value"
-# (Warp's stubs mistype vector arithmetic)
 import warp as wp
 
 _PI = wp.constant(3.141592653589793)

@@ -11,8 +11,6 @@ Pascal's triangle modulo 2 to the bits of the index; as that matrix is the fifth
 five masked shifts do it.
 """
 
-# mypy: disable-error-code="operator"
-# (Warp's stubs lack shifts of unsigned integers)
 import warp as wp
 
 from scratchwarp.optics.hash_device import hash_combine, pcg_hash, unit_float

@@ -36,9 +36,6 @@ from ..optics.microfacets_device import (
 from ..optics.sampling_device import sample_cosine_hemisphere
 from .base_energy_device import bound_at, bound_mean, bound_shape
 
-# mypy: disable-error-code="call-overload, assignment, arg-type, operator, index, attr-defined, return-value"
-# (Warp's stubs mistype vector arithmetic)
-
 wp.set_module_options({"enable_backward": False})
 
 SCHLICK = wp.constant(0)
@@ -83,7 +80,7 @@ class BaseTerms:
 
 @wp.struct
 class BaseSample:
-    """A direction; ``weight`` = f_r cos(theta_i) / pdf; ``delta`` 1: a mirror of probability ``pdf``; pdf 0: nothing."""
+    """A direction; ``weight`` = f_r cos(theta_i) / pdf; ``delta`` 1: mirror of probability ``pdf``; pdf 0: nothing."""
 
     wi: wp.vec3
     weight: wp.vec3
@@ -181,8 +178,10 @@ def base_lobes(b: Base, wo: wp.vec3, w_diffuse: float, w_specular: float) -> Bas
             mean = specular_left(lobes, b.specular, bound_mean(lobes.shape))
             mean = wp.vec3(wp.max(mean[0], 1.0e-4), wp.max(mean[1], 1.0e-4), wp.max(mean[2], 1.0e-4))
             lobes.albedo = wp.cw_mul(b.diffuse, wp.cw_div(lobes.left, mean))
-            # a floor: turned facets reflect a little where the bound at the normal is 0
-            specular = 1.0 - mean3(lobes.left) + 0.01 * b.specular * mean3(lobes.f90)
+            specular = 1.0 - mean3(lobes.left)
+            if lobes.delta_specular == 0:
+                # a floor: turned facets reflect a little where the bound at the normal is 0
+                specular += 0.01 * b.specular * mean3(lobes.f90)
     diffuse = w_diffuse * below * mean3(wp.cw_mul(b.diffuse, lobes.left))
     specular = w_specular * below * specular
     clearcoat = w_specular * lobes.clearcoat_bound
