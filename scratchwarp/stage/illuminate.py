@@ -54,8 +54,13 @@ def read_lights(
                 found = _emitter(found, metric, out, materials)
         if found is None:
             continue
-        links = {name: linked(prim, c, paths) for name, c in (("linked", "lightLink"), ("shadow_linked", "shadowLink"))}
-        out.lights.append(replace(found, path=placed.path, **links))
+        found = replace(
+            found,
+            path=placed.path,
+            linked=linked(prim, "lightLink", paths),
+            shadow_linked=linked(prim, "shadowLink", paths),
+        )
+        out.lights.append(found)
     if not out.lights:
         reading.warn(reading.path, "the stage has no light; a white dome of radiance 1 lights it")
         out.lights.append(DomeLight(path="", radiance=np.ones(3), camera_visible=False))

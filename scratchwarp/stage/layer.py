@@ -56,21 +56,18 @@ def _layer(reading: Reading, prim: Usd.Prim, name: str, curves: CurveSets) -> La
     def get(attribute: str, otherwise: Any = None) -> Any:
         return reading.value(prim, f"{_PREFIX}{name}:{attribute}", otherwise)
 
-    def colored(attribute: str) -> tuple[float, ...]:
-        found = prim.GetAttribute(f"{_PREFIX}{name}:{attribute}")
-        return tuple(color(reading, found, np.array(get(attribute), np.float64)).tolist())
-
     where = f"{prim.GetPath()} layer {name!r}"
-    fields = {field: float(get(attribute)) for attribute, field in _NUMBERS.items()}
+    fields: dict[str, Any] = {field: float(get(attribute)) for attribute, field in _NUMBERS.items()}
     for attribute in _ANGLES:
         fields[_NUMBERS[attribute]] = float(np.radians(fields[_NUMBERS[attribute]]))
     for attribute in _UNHONOURED:
         if _path_or_text(get(attribute)):
             reading.warn(where, f"{_PREFIX}*:{attribute} is not honoured")
-    tokens = {field: str(get(attribute)) for attribute, field in _TOKENS.items()}
+    tokens: dict[str, Any] = {field: str(get(attribute)) for attribute, field in _TOKENS.items()}
     targets = prim.GetRelationship(f"{_PREFIX}{name}:curves").GetForwardedTargets()
     if tokens["distribution"] == "curves" and not targets:
         reading.warn(where, "distribution is curves but its relationship curves has no target; it has no scratches")
+    tint = prim.GetAttribute(f"{_PREFIX}{name}:diffuseColor")
     extra = tuple((attribute, get(attribute)) for attribute in _EXTRA)
     try:
         return Layer(
@@ -81,15 +78,15 @@ def _layer(reading: Reading, prim: Usd.Prim, name: str, curves: CurveSets) -> La
             offset=_pair(get("offset")),
             center=_pair(get("center")),
             seed=int(get("seed")),
-            eta=tuple(float(v) for v in get("eta")),  # type: ignore[arg-type]
-            k=tuple(float(v) for v in get("k")),  # type: ignore[arg-type]
-            diffuse_color=colored("diffuseColor"),  # type: ignore[arg-type]
+            eta=_triple(get("eta")),
+            k=_triple(get("k")),
+            diffuse_color=_triple(color(reading, tint, np.array(get("diffuseColor"), np.float64))),
             curves=curves.indices(where, targets, fields["width"], fields["depth"], tokens["space"]),
             patterns=int(get("patterns")),
             cross_angle=float(np.radians(get("crossAngle"))),
             extra=extra,
             **fields,
-            **tokens,  # type: ignore[arg-type]
+            **tokens,
         )
     except StageError:
         raise
@@ -160,6 +157,10 @@ def read_wave(reading: Reading, prim: Usd.Prim) -> Wave | None:
 
 def _pair(values: Any) -> tuple[float, float]:
     return float(values[0]), float(values[1])
+
+
+def _triple(values: Any) -> tuple[float, float, float]:
+    return float(values[0]), float(values[1]), float(values[2])
 
 
 def _path_or_text(value: Any) -> str:

@@ -52,7 +52,7 @@ def read_settings(reading: Reading, wanted: str | None) -> StageSettings:
     if len(products) > 1:
         reading.warn(path, f"has {len(products)} render products; the camera and the frame of the first are used")
     merged = _Merged(reading, prim, products[:1])
-    _complain(reading, prim, merged)
+    _complain(reading, prim)
     cameras = merged.targets("camera")
     included = prim.GetAttribute("includedPurposes")
     return StageSettings(
@@ -92,10 +92,12 @@ def _options(reading: Reading, prim: Usd.Prim, merged: _Merged, products: Sequen
         name: reading.value(prim, _PREFIX + name) if prim.GetAttribute(_PREFIX + name).HasAuthoredValue() else None
         for name in ("samplesPerPixel", "seed", "maxError", "quality", "integrator", "maxDepth", "filterWidth")
     }
-    resolution = tuple(int(v) for v in merged.value("resolution")) if merged.authored("resolution") else None
-    if resolution is not None and min(resolution) < 1:
-        reading.warn(prim.GetPath(), f"resolution is {resolution}; it is ignored")
-        resolution = None
+    resolution = None
+    if merged.authored("resolution"):
+        wide, high = (int(v) for v in merged.value("resolution"))
+        resolution = (wide, high) if min(wide, high) >= 1 else None
+        if resolution is None:
+            reading.warn(prim.GetPath(), f"resolution is {(wide, high)}; it is ignored")
     x0, y0, x1, y1 = (float(v) for v in merged.value("dataWindowNDC", (0, 0, 1, 1)))
     if not (x0 < x1 and y0 < y1):
         reading.warn(prim.GetPath(), f"dataWindowNDC is {(x0, y0, x1, y1)}; it is ignored")
@@ -105,7 +107,7 @@ def _options(reading: Reading, prim: Usd.Prim, merged: _Merged, products: Sequen
     try:
         return RenderOptions(
             path=str(prim.GetPath()),
-            resolution=resolution,  # type: ignore[arg-type]
+            resolution=resolution,
             pixel_aspect=float(merged.value("pixelAspectRatio", 1.0)),
             conform=str(merged.value("aspectRatioConformPolicy", "expandAperture")),
             data_window=(x0, y0, x1, y1),
@@ -141,7 +143,7 @@ def _product(reading: Reading, prim: Usd.Prim) -> RenderProduct:
     return RenderProduct(path=str(prim.GetPath()), name=name, vars=tuple(found))
 
 
-def _complain(reading: Reading, prim: Usd.Prim, merged: _Merged) -> None:
+def _complain(reading: Reading, prim: Usd.Prim) -> None:
     space = str(reading.value(prim, "renderingColorSpace", "") or "")
     if space not in UNTOUCHED:
         reading.warn(prim.GetPath(), f"renderingColorSpace is {space!r}; images are rendered in linear Rec.709")

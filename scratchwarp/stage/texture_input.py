@@ -34,10 +34,10 @@ def read_texture_input(
         fallback = _get(reading, node, "fallback")
         if fallback is None:
             return default
-        channel = "rgba".index(output) if output != "rgb" else 0
-        return (
-            tuple(float(v) for v in fallback)[:3] if is_color and output == "rgb" else _one(fallback, channel, is_color)
-        )
+        if is_color and output == "rgb":
+            return tuple(float(v) for v in fallback)[:3]
+        value = float(fallback["rgba".index(output) if output != "rgb" else 0])
+        return (value, value, value) if is_color else value
     uv_set, transform = _coordinates(reading, node)
     return TextureInput(
         texture=index,
@@ -49,11 +49,6 @@ def read_texture_input(
         transform=transform,
         uv_set=uv_set,
     )
-
-
-def _one(values: Any, channel: int, is_color: bool) -> Any:
-    value = float(values[channel])
-    return (value, value, value) if is_color else value
 
 
 def _source(node: UsdShade.Shader, name: str) -> Usd.Attribute | None:

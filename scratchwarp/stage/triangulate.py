@@ -28,7 +28,8 @@ def triangulate(points: np.ndarray, counts: np.ndarray, indices: np.ndarray, fac
 
     ``points`` [n, 3]; ``counts`` [f] corners of every face, each 3 or more for the faces asked for; ``indices``
     [sum(counts)] point indices. Convex faces become fans, quadrilaterals are cut at their reflex corner, other concave
-    faces are clipped ear by ear in the plane of their area vector. Winding is kept; triangles without area are left out.
+    faces are clipped ear by ear in the plane of their area vector. Winding is kept; triangles without area are left
+    out.
     """
     starts = np.concatenate(([0], np.cumsum(counts)[:-1]))
     corners, owners = [np.zeros((0, 3), np.int64)], [np.zeros(0, np.int64)]
