@@ -17,6 +17,7 @@ def evaluate(
     value: wp.array(dtype=wp.vec3),
     pdf: wp.array(dtype=float),
 ):
+    """Value (f_r cos(theta_i) [1/sr]) and density [1/sr] for pairs of directions; one base for all."""
     i = wp.tid()
     t = base_eval_pdf(base[0], wo[i], wi[i], w_diffuse, w_specular)
     value[i] = t.value
@@ -35,6 +36,7 @@ def sample(
     pdf: wp.array(dtype=float),
     delta: wp.array(dtype=int),
 ):
+    """One sample for each view and triple of uniform numbers."""
     i = wp.tid()
     s = base_sample(base[0], wo[i], wp.vec2(u[i][0], u[i][1]), u[i][2], w_diffuse, w_specular)
     wi[i] = s.wi
@@ -55,6 +57,7 @@ def preview(
     clearcoat_roughness: float,
     base: wp.array(dtype=Base),
 ):
+    """The base of one set of UsdPreviewSurface inputs."""
     base[0] = preview_surface(
         diffuse, metallic, specular_workflow, specular_color, roughness, ior, clearcoat, clearcoat_roughness
     )
