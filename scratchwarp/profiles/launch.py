@@ -12,6 +12,10 @@ from functools import lru_cache
 from itertools import count
 from typing import Any
 
+import warp as wp
+
+_TILES = 8
+
 
 def default_threads() -> int:
     """Processors that this process may use."""
@@ -41,8 +45,19 @@ def run_tiles(tiles: Sequence[Callable[[], Any]], threads: int) -> None:
         helper.result()
 
 
-def ranges(total: int, pieces: int) -> list[tuple[int, int]]:
+def ranges(total: int, pieces: int = _TILES) -> list[tuple[int, int]]:
     """``(start, length)`` of at most ``pieces`` nearly equal parts of ``range(total)``."""
     pieces = max(1, min(pieces, total))
     edges = [total * k // pieces for k in range(pieces + 1)]
     return [(a, b - a) for a, b in zip(edges[:-1], edges[1:], strict=True) if b > a]
+
+
+def launch_tiles(kernel: Any, total: int, inputs: list[Any], threads: int) -> None:
+    """Launch ``kernel(start, *inputs)`` over ``range(total)`` in tiles on ``threads`` threads."""
+    tiles = [record(kernel, length, [start, *inputs]).launch for start, length in ranges(total, _TILES)]
+    run_tiles(tiles, threads)
+
+
+def record(kernel: Any, dim: int, inputs: list[Any]) -> Any:
+    """A launch on the CPU made ready, to be started from any thread by its ``launch()``."""
+    return wp.launch(kernel, dim=dim, inputs=inputs, device="cpu", record_cmd=True)

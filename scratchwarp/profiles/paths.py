@@ -8,13 +8,12 @@ import numpy as np
 import warp as wp
 
 from scratchwarp.profiles import energy_kernels as energies
-from scratchwarp.profiles.launch import ranges, run_tiles
+from scratchwarp.profiles.launch import launch_tiles
 from scratchwarp.profiles.outline import outline
 from scratchwarp.profiles.path_device import Cosines
 from scratchwarp.profiles.profile import Profile
 from scratchwarp.profiles.trace_kernels import Lines, beam_kernel, sample_kernel
 
-_TILES = 12
 _BOUNCES_EXPECTED = 4
 # Reflectance against the cosine is tabulated this finely and interpolated linearly: error below 1e-5 for metals and
 # glass.
@@ -74,15 +73,9 @@ class Paths:
         deposit.lost = wp.zeros(columns, dtype=float, device="cpu")
         deposit.lines_each = self.beams.lines_each
         fill = energies.deposit_strips if self.sampler == "beam" else energies.deposit_samples
-        tiles = []
-        for start, length in ranges(columns, _TILES):
-            commands = []
-            if reflectance is not None:
-                first, many = start * self.beams.lines_each, length * self.beams.lines_each
-                commands.append(_record(energies.reflect_along, many, [first, self.lines, self.cosines, reflectors]))
-            commands.append(_record(fill, length, [start, self.lines, reflectors, deposit]))
-            tiles.append(_sequence(commands))
-        run_tiles(tiles, self.threads)
+        if reflectance is not None:
+            launch_tiles(energies.reflect_along, line_count, [self.lines, self.cosines, reflectors], self.threads)
+        launch_tiles(fill, columns, [self.lines, reflectors, deposit], self.threads)
         energy, lost = deposit.energy.numpy(), deposit.lost.numpy()
         if self.sampler != "beam":
             energy, lost = energy / np.float32(capacity), lost / np.float32(capacity)
@@ -102,7 +95,7 @@ def trace_paths(
     lines.bin = np.pi / bins
     lines.max_bounces = max_bounces
     cosines = Cosines()
-    capacity = rays * _BOUNCES_EXPECTED
+    capacity = rays * _BOUNCES_EXPECTED + 2 * max_bounces
     height_field = not profile.overhangs
     extra: list[Any] = []
     if sampler == "beam":
@@ -116,11 +109,7 @@ def trace_paths(
     while True:
         cosines.value = wp.empty(len(beams.phi) * capacity, dtype=float, device="cpu")
         cosines.capacity = capacity
-        tiles = [
-            _sequence([_record(kernel, length, [start, target, lines, cosines, *extra])])
-            for start, length in ranges(len(beams.phi), _TILES)
-        ]
-        run_tiles(tiles, threads)
+        launch_tiles(kernel, len(beams.phi), [target, lines, cosines, *extra], threads)
         needed = int(lines.counts.numpy()[:, 2].max())
         if needed <= capacity:
             return Paths(beams, bins, sampler, lines, cosines, threads)
@@ -142,18 +131,6 @@ def _lines(count: int, capacity: int, strips: bool) -> Any:
         lines.queue = wp.empty((count, 3 * shape[1]), dtype=int, device="cpu")
     lines.counts = wp.empty((count, 3), dtype=int, device="cpu")
     return lines
-
-
-def _record(kernel: Any, dim: int, inputs: list[Any]) -> Any:
-    return wp.launch(kernel, dim=dim, inputs=inputs, device="cpu", record_cmd=True)
-
-
-def _sequence(commands: list[Any]) -> Any:
-    def run() -> None:
-        for command in commands:
-            command.launch()
-
-    return run
 
 
 def _products(lines: int, capacity: int, layers: int) -> Any:

@@ -9,6 +9,7 @@ import numpy as np
 
 from scratchwarp.optics.fresnel import Mirror
 from scratchwarp.profiles import theta as theta_models
+from scratchwarp.profiles.balance import balanced, exponents
 from scratchwarp.profiles.launch import default_threads
 from scratchwarp.profiles.paths import NODES, Beams, Paths, trace_paths
 from scratchwarp.profiles.profile import Profile
@@ -47,11 +48,12 @@ def simulate(
     channels = 1 if reflector is None else int(reflector.channels)
     mu = theta_models.nodes(theta_model)
     reflectance = None if reflector is None else reflectance_rows(reflector, tuple(float(m) for m in mu))
+    threads = threads or default_threads()
     layers, lost, traced = _layers(
-        profile, reflectance, resolution, rays, incidence, sampler, max_bounces, seed, threads or default_threads()
+        profile, reflectance, resolution, rays, incidence, sampler, max_bounces, seed, threads
     )
     angles, weights = bin_angles(resolution), bin_weights(resolution)
-    by_bounce = np.ascontiguousarray(layers[:3])
+    by_bounce = layers[:3]
     mirror = by_bounce.sum(axis=0)
     normal = gamma = slices = None
     flagged = 0.0
@@ -59,10 +61,10 @@ def simulate(
         slices = np.broadcast_to(mirror, (len(mu), *mirror.shape))
         normal, gamma = mirror, np.ones_like(mirror)
     elif reflector is not None:
-        slices = layers[3:].reshape(len(mu), channels, resolution, resolution)
-        slices = slices[:, 0] if channels == 1 else np.ascontiguousarray(np.moveaxis(slices, 1, -1))
-        normal, sixty = slices[0], slices[int(np.argmin(np.abs(mu - 0.5)))]
-        gamma, flagged = theta_models.exponent(mirror if channels == 1 else mirror[..., None], normal, sixty)
+        stack = layers[3:].reshape(len(mu), channels, resolution, resolution)
+        exponent, flagged = exponents(mirror, stack[0], stack[int(np.argmin(np.abs(mu - 0.5)))], threads)
+        slices = _channels_last(stack, 1)
+        normal, gamma = slices[0], _channels_last(exponent, 0)
     metadata = {
         "sampler": sampler,
         "incidence": incidence,
@@ -118,7 +120,12 @@ def simulate_full(
     if reflectance is None:
         return np.repeat(layers[:3].sum(axis=0)[None], len(angles), axis=0)
     slices = layers[3:].reshape(len(angles), channels, resolution, resolution)
-    return np.ascontiguousarray(slices[:, 0] if channels == 1 else np.moveaxis(slices, 1, -1))
+    return _channels_last(slices, 1)
+
+
+def _channels_last(stack: np.ndarray, axis: int) -> np.ndarray:
+    """A single channel dropped, several moved to the end."""
+    return stack.take(0, axis) if stack.shape[axis] == 1 else np.ascontiguousarray(np.moveaxis(stack, axis, -1))
 
 
 def _check(profile: Any, resolution: int, rays: int, incidence: str, sampler: str, max_bounces: int, seed: int) -> None:
@@ -205,33 +212,7 @@ def _layers(
         traced += paths.rays
     energy = np.concatenate([part[0] for part in parts]) if len(parts) > 1 else parts[0][0]
     lost = np.concatenate([part[1] for part in parts]) if len(parts) > 1 else parts[0][1]
-    energy = np.moveaxis(energy, 0, 1)  # [layers, phi_i, phi_o]
     if half:
-        mirrored = energy[:, ::-1, ::-1]
-        energy = np.concatenate((energy, mirrored[:, resolution % 2 :]), axis=1)
         lost = np.concatenate((lost, lost[::-1][resolution % 2 :]))
-    weights = bin_weights(resolution).astype(np.float32)
-    return _balanced(energy, weights, lost, profile.reciprocal and incidence == "cell"), lost, traced
-
-
-def _balanced(energy: np.ndarray, weights: np.ndarray, lost: np.ndarray, reciprocal: bool) -> np.ndarray:
-    """Shares ``[layers, phi_i, phi_o]`` of each column's light as rho ``[layers, phi_o, phi_i]`` [1/rad].
-
-    Where the profile is reciprocal the energy weights[i] * share is averaged with its transpose; then rows and
-    columns are scaled together (three rounds of symmetric Sinkhorn scaling, then once by column) so that each column
-    accounts for all its light but ``lost``.
-    """
-    if not reciprocal:
-        return np.ascontiguousarray((energy / weights).transpose(0, 2, 1))
-    flow = energy * weights[:, None]
-    flow = 0.5 * (flow + flow.transpose(0, 2, 1))
-    mirror = flow[:3].sum(axis=0)
-    target = weights * (1.0 - lost)
-    scale = np.ones_like(weights)
-    for _ in range(3):
-        have = scale * (mirror @ scale)
-        scale *= np.sqrt(np.divide(target, have, out=np.ones_like(have), where=have > 0.0))
-    have = scale * (mirror @ scale)
-    last = np.divide(target, have, out=np.ones_like(have), where=have > 0.0)
-    rows, columns = scale / weights, scale * last / weights
-    return flow * (rows[:, None] * columns[None, :])
+    reciprocal = profile.reciprocal and incidence == "cell"
+    return balanced(energy, bin_weights(resolution), lost, reciprocal, threads), lost, traced

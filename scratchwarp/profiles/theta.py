@@ -14,7 +14,6 @@ import numpy as np
 
 THETA_MODELS = ("gamma", "quadratic", "exact")
 _EXACT_NODES = 9
-_LARGEST_GAMMA = 64.0
 
 
 def nodes(model: str) -> np.ndarray:
@@ -24,20 +23,6 @@ def nodes(model: str) -> np.ndarray:
     if model == "exact":
         return 0.5 + 0.5 * np.cos(np.pi * np.arange(_EXACT_NODES - 1) / (_EXACT_NODES - 1))
     return np.array([1.0, 0.5])
-
-
-def exponent(mirror: np.ndarray, normal: np.ndarray, sixty: np.ndarray) -> tuple[np.ndarray, float]:
-    """``(gamma, flagged)``: Raymond's exponent for each cell, finite and in [0, 64], and the share of cells with
-    energy whose curve a power cannot represent (r = (rho60 - rho0) / (rho90 - rho0) outside (0, 1]). Flat and empty
-    cells get 1, where any value serves."""
-    span = mirror - normal
-    occupied = np.broadcast_to(mirror > 0.0, span.shape)
-    curved = span > 1e-6 * np.maximum(mirror, 1e-30)
-    r = np.where(curved, (sixty - normal) / np.where(curved, span, 1.0), 2.0 / 3.0)
-    wrong = occupied & curved & ((r <= 0.0) | (r > 1.0))
-    lowest = (2.0 / 3.0) ** _LARGEST_GAMMA
-    gamma = np.log(np.clip(r, lowest, 1.0)) / np.log(2.0 / 3.0)
-    return gamma.astype(np.float32), float(wrong.sum() / max(int(occupied.sum()), 1))
 
 
 def between_slices(mirror: np.ndarray, slices: np.ndarray, mu_nodes: np.ndarray, theta: float) -> np.ndarray:

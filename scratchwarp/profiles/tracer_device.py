@@ -24,10 +24,11 @@ class Outline:
     bend: wp.array(dtype=wp.vec2)  # [n] half the second derivative: start - 2 control + end, zero when flat
     turn: wp.array(dtype=int)  # [n] 0 flat, 1 cup, -1 hump
     normal: wp.array(dtype=wp.vec2)  # [n] unit normal of the chord
-    # [n] slopes (to the left, to the right) above which a ray from the facet meets nothing
-    horizon: wp.array(dtype=wp.vec2)
+    # left, right and top of each run of ``group`` facets, which a ray may pass over at once
+    box: wp.array(dtype=wp.vec3)
     concave: wp.array(dtype=int)  # [n + 1] whether the two facets at a vertex face each other
     start: wp.array(dtype=int)  # [cells] the facet under x = cell / cells
+    group: int  # a power of two
     ground: float  # height of the flat ground beside an isolated profile
     isolated: int
     height_field: int
@@ -115,10 +116,7 @@ def march(outline: Outline, o: wp.vec2, d: wp.vec2, k: int, t: float):
     done = bool(False)
     j = k
     if leaving:
-        limit = outline.horizon[k]
-        if d[1] > 0.0 and ((rightward and d[1] > limit[1] * d[0]) or (not rightward and d[1] > -limit[0] * d[0])):
-            done = True
-        elif outline.turn[k] > 0:
+        if outline.turn[k] > 0:
             # the other crossing of the same arc; the one at t is known, so only a linear equation is left
             bend = cross2(d, outline.bend[k])
             if bend != 0.0:
@@ -133,6 +131,9 @@ def march(outline: Outline, o: wp.vec2, d: wp.vec2, k: int, t: float):
     near = float(0.0)
     fresh = bool(True)
     turns = int(0)
+    mask = outline.group - 1
+    first = wp.where(rightward, 0, mask)
+    stride = wp.where(rightward, outline.group, -outline.group)
     p = o
     while not done:
         if j < 0 or j >= count:
@@ -155,7 +156,16 @@ def march(outline: Outline, o: wp.vec2, d: wp.vec2, k: int, t: float):
                 p = wp.vec2(o[0] - shift, o[1])
                 j = wp.where(rightward, 0, count - 1)
                 fresh = True
-        if not done:
+        clear = bool(False)
+        if not done and (j & mask) == first:
+            box = outline.box[j / outline.group]
+            one = cross2(d, wp.vec2(box[0], box[2]) - p)
+            two = cross2(d, wp.vec2(box[1], box[2]) - p)
+            clear = wp.where(rightward, wp.max(one, two) <= 0.0, wp.min(one, two) > 0.0)
+        if clear:
+            j += stride
+            fresh = True
+        elif not done:
             if fresh:
                 near = cross2(d, outline.vertex[wp.where(rightward, j, j + 1)] - p)
                 fresh = False

@@ -1,6 +1,5 @@
 """Tables against brute force, closed forms and conservation laws."""
 
-import brute_force
 import numpy as np
 import pytest
 
@@ -28,7 +27,7 @@ def test_columns_conserve_energy_and_swap_light_and_viewer(name):
 
 @pytest.mark.parametrize("isolated", [False, True])
 @pytest.mark.parametrize("sampler", profiles.SAMPLERS)
-def test_undercut_bulging_profile_against_brute_force(isolated, sampler):
+def test_undercut_bulging_profile_against_brute_force(brute_force, isolated, sampler):
     """An outline that is no height field and stands out of the ground, by an independent float64 tracer."""
     columns = [1, 9, 15, 16, 25]
     reference, lost = brute_force.table(UNDERCUT, 32, 3000, columns=columns, isolated=isolated)
