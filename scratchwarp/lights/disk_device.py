@@ -17,8 +17,8 @@ from scratchwarp.lights.light_device import (
     no_sample,
     shaped_radiance,
 )
-from scratchwarp.lights.polygon_device import parallelogram_solid_angle, span_outline
-from scratchwarp.lights.spherical_rect_device import spherical_rect_offset
+from scratchwarp.lights.polygon_device import span_outline
+from scratchwarp.lights.spherical_rect_device import rect_solid_angle, spherical_rect_offset
 from scratchwarp.optics.sampling_device import sample_concentric_disk
 
 _SIDES = wp.constant(8)  # of the outline around the ellipse: 5 % more area than the ellipse
@@ -29,8 +29,8 @@ _CORNERS = wp.constant(1.2732395447351628)  # 4 / pi, the rectangle's area over 
 @wp.func
 def disk_pdf(light: Light, p: wp.vec3, height: float, distance: float) -> float:
     """Density [1/sr] of ``sample_disk`` for a point of the ellipse at ``distance``; ``p`` = centre - x."""
-    pdf = (distance / height) * (distance * distance / light.size)
-    solid_angle = parallelogram_solid_angle(p, light.ex, light.ey, height, _CORNERS * light.size)
+    pdf = wp.min((distance / height) * (distance * distance / light.size), 1.0e30)
+    solid_angle = rect_solid_angle(p, light.ex, light.ey, height, _CORNERS * light.size)
     if solid_angle > _NEAR:
         pdf = 1.0 / solid_angle
     return pdf
@@ -45,7 +45,7 @@ def sample_disk(arrays: LightArrays, light: Light, x: wp.vec3, u: wp.vec2) -> Li
     if height > 1.0e-12 and light.size > 0.0:
         q = sample_concentric_disk(u)
         offset = q[0] * light.ex + q[1] * light.ey
-        solid_angle = parallelogram_solid_angle(p, light.ex, light.ey, height, _CORNERS * light.size)
+        solid_angle = rect_solid_angle(p, light.ex, light.ey, height, _CORNERS * light.size)
         if solid_angle > _NEAR:
             offset = spherical_rect_offset(p, light.ex, light.ey, height, u)
         a = wp.dot(offset, light.rx)

@@ -114,7 +114,7 @@ def pack_lights(
     arrays.cdf = wp.array(np.concatenate(packer.cdf or [np.zeros(1, np.float32)]), dtype=float, device=device)
     corners = np.concatenate(packer.triangles or [np.zeros((1, 3, 3), np.float32)]).reshape(-1, 3)
     arrays.triangles = wp.array(corners, dtype=wp.vec3, device=device)
-    on_device = {
+    on_device: dict[str, Any] = {
         name: wp.array([_struct(f) for f in fields], dtype=Light, device=device) for name, fields in rows.items()
     }
     return PackedLights(tuple(models), tuple(models.values()), on_device, slots, arrays, tuple(warnings))

@@ -1,4 +1,4 @@
-"""Flat convex outlines on the device: solid angle of a parallelogram, scratch-cone interval of a regular outline.
+"""Flat convex outlines on the device: where a scratch cone crosses them.
 
 The outline has ``sides`` vertices center + a ex + b ey with (a, b) on the regular polygon around the unit circle: 4
 sides give the corners +-ex +-ey, 8 sides a polygon that contains the ellipse with half-axes ex, ey.
@@ -11,32 +11,6 @@ from scratchwarp.lights.light_device import Span
 
 _PI = wp.constant(3.141592653589793)
 _SLACK = wp.constant(4.0e-7)  # error of a plane's height over a direction, both unit, in float32
-
-
-@wp.func
-def triangle_solid_angle(a: wp.vec3, b: wp.vec3, c: wp.vec3, volume: float) -> float:
-    """Solid angle of a triangle seen from the origin (van Oosterom and Strackee 1983).
-
-    ``volume``: |a . (b x c)|, given, because the caller has it as plane distance times twice the area, without
-    cancellation.
-    """
-    la = wp.length(a)
-    lb = wp.length(b)
-    lc = wp.length(c)
-    below = 1.0 + wp.dot(a / la, b / lb) + wp.dot(a / la, c / lc) + wp.dot(b / lb, c / lc)
-    above = volume / la / lb / lc
-    return wp.where(above > 0.0, 2.0 * wp.atan2(above, below), 0.0)
-
-
-@wp.func
-def parallelogram_solid_angle(center: wp.vec3, ex: wp.vec3, ey: wp.vec3, height: float, area: float) -> float:
-    """Solid angle of center +- ex +- ey seen from the origin at ``height`` > 0 over its plane; relative error some
-    1e-6 however small it is."""
-    a = center - ex - ey
-    b = center + ex - ey
-    c = center + ex + ey
-    d = center - ex + ey
-    return triangle_solid_angle(a, b, c, height * area) + triangle_solid_angle(a, c, d, height * area)
 
 
 @wp.func

@@ -18,8 +18,8 @@ from scratchwarp.lights.light_device import (
     no_sample,
     shaped_radiance,
 )
-from scratchwarp.lights.polygon_device import parallelogram_solid_angle, span_outline
-from scratchwarp.lights.spherical_rect_device import spherical_rect_offset
+from scratchwarp.lights.polygon_device import span_outline
+from scratchwarp.lights.spherical_rect_device import rect_solid_angle, spherical_rect_offset
 from scratchwarp.reflectance.texture_device import texel_bilinear
 
 
@@ -36,11 +36,22 @@ def rect_radiance(arrays: LightArrays, light: Light, offset: wp.vec3, w: wp.vec3
 
 
 @wp.func
+def sampled_solid_angle(light: Light, p: wp.vec3, height: float) -> float:
+    """The solid angle where directions are sampled uniformly over it, else 0."""
+    result = 0.0
+    if light.half_angle < 100.0:
+        result = rect_solid_angle(p, light.ex, light.ey, height, light.size)
+        if result < light.half_angle:
+            result = 0.0
+    return result
+
+
+@wp.func
 def rect_pdf(light: Light, solid_angle: float, height: float, distance: float) -> float:
     """Density [1/sr] of ``sample_rect`` for a point at ``distance``, x being ``height`` over the plane."""
-    pdf = 1.0 / solid_angle
-    if solid_angle < light.half_angle:
-        pdf = (distance / height) * (distance * distance / light.size)
+    pdf = wp.min((distance / height) * (distance * distance / light.size), 1.0e30)
+    if solid_angle > 0.0:
+        pdf = 1.0 / solid_angle
     return pdf
 
 
@@ -51,16 +62,15 @@ def sample_rect(arrays: LightArrays, light: Light, x: wp.vec3, u: wp.vec2) -> Li
     p = light.center - x
     height = -wp.dot(p, light.ez)
     if height > 1.0e-12 and light.size > 0.0:
-        solid_angle = parallelogram_solid_angle(p, light.ex, light.ey, height, light.size)
-        if solid_angle > 1.0e-30:
-            offset = (2.0 * u[0] - 1.0) * light.ex + (2.0 * u[1] - 1.0) * light.ey
-            if solid_angle >= light.half_angle:
-                offset = spherical_rect_offset(p, light.ex, light.ey, height, u)
-            d = p + offset
-            s.distance = wp.length(d)
-            s.wi = d / s.distance
-            s.radiance = rect_radiance(arrays, light, offset, s.wi)
-            s.pdf = rect_pdf(light, solid_angle, height, s.distance)
+        solid_angle = sampled_solid_angle(light, p, height)
+        offset = (2.0 * u[0] - 1.0) * light.ex + (2.0 * u[1] - 1.0) * light.ey
+        if solid_angle > 0.0:
+            offset = spherical_rect_offset(p, light.ex, light.ey, height, u)
+        d = p + offset
+        s.distance = wp.length(d)
+        s.wi = d / s.distance
+        s.radiance = rect_radiance(arrays, light, offset, s.wi)
+        s.pdf = rect_pdf(light, solid_angle, height, s.distance)
     return s
 
 
@@ -75,11 +85,9 @@ def hit_rect(arrays: LightArrays, light: Light, x: wp.vec3, w: wp.vec3) -> Light
         distance = height / descent
         offset = distance * w - p
         if wp.abs(wp.dot(offset, light.rx)) <= 1.0 and wp.abs(wp.dot(offset, light.ry)) <= 1.0:
-            solid_angle = parallelogram_solid_angle(p, light.ex, light.ey, height, light.size)
-            if solid_angle > 1.0e-30:
-                h.distance = distance
-                h.radiance = rect_radiance(arrays, light, offset, w)
-                h.pdf = rect_pdf(light, solid_angle, height, distance)
+            h.distance = distance
+            h.radiance = rect_radiance(arrays, light, offset, w)
+            h.pdf = rect_pdf(light, sampled_solid_angle(light, p, height), height, distance)
     return h
 
 
