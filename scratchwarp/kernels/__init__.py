@@ -1,1 +1,21 @@
+"""EffectPlan -> one specialised kernel and its arguments.
 
+Files (host):
+    key             KernelKey: what a kernel is specialised by
+    assemble        scene, plan and tables -> key and arguments
+    geometry        instances -> world triangles and their hierarchy
+    material        materials and layers -> device records
+Files (device):
+    render_device   make_kernel(key): the kernel itself
+    camera_device, film_device, geometry_device, material_device: structs and what is read from them
+    base_at_device  a material at a point
+    layers_device   coverage of all layers under a footprint
+    lobe_device     the lobe a sample chose
+    bounce_device   choosing a lobe and going on from a surface
+    direct_device   light sampling and lights that rays meet
+"""
+
+from .assemble import Assembled, assemble, kernel_key
+from .key import KernelKey
+
+__all__ = ["Assembled", "KernelKey", "assemble", "kernel_key"]

@@ -5,7 +5,7 @@ import warp as wp
 from ..lights.light_device import Light, LightArrays
 from ..lights.mesh_device import mesh_light_hit, span_mesh
 from ..optics.frames_device import Frame, frame_with_tangent, to_local, to_world
-from ..reflectance.base_device import Base, base_albedo, base_sample, specular_bound
+from ..reflectance.base_device import Base, base_albedo, base_fresnel, base_sample
 from ..reflectance.profile_table_device import TableArrays, cone_direction, table_row, table_sample
 from ..scratches.layer_device import LayerData
 from .geometry_device import Geometry, Surface
@@ -68,19 +68,19 @@ def make_bounce(key: KernelKey, rotated, emission_at):
         lobe.w_specular = 1.0
         if wp.static(key.scratches):
             if m.layers > 0:
-                l = gather(g, layers, m, s, frame, step_x, step_y, u_lobe[1], u_more[1])
-                lobe.w_specular = 1.0 - l.covered
-                lobe.w_diffuse = 1.0 - l.covered + l.kept
-                if l.chosen >= 0:
+                laid = gather(g, layers, m, s, frame, step_x, step_y, u_lobe[1], u_more[1])
+                lobe.w_specular = 1.0 - laid.covered
+                lobe.w_diffuse = 1.0 - laid.covered + laid.kept
+                if laid.chosen >= 0:
                     kept = lobe.w_diffuse - lobe.w_specular
                     of_base = lobe.w_specular * largest(base_albedo(base, to_local(frame, wo)))
                     of_base += kept * largest(base.diffuse)
-                    p = l.weight / wp.max(l.weight + of_base, 1.0e-20)
+                    p = laid.weight / wp.max(laid.weight + of_base, 1.0e-20)
                     if u_lobe[0] < p:
-                        layer = layers[l.chosen]
-                        lobe.scale = l.weight / (p * layer.weight)
+                        layer = layers[laid.chosen]
+                        lobe.scale = laid.weight / (p * layer.weight)
                         lobe.scratch = 1
-                        lobe.frame = frame_with_tangent(frame.n, l.direction)
+                        lobe.frame = frame_with_tangent(frame.n, laid.direction)
                         lobe.wo = to_local(lobe.frame, wo)
                         if wp.static(key.diffuse_scratches):
                             if layer.table < 0:
@@ -95,7 +95,7 @@ def make_bounce(key: KernelKey, rotated, emission_at):
                         if lobe.scratch == 1:
                             lobe.table = layer.table
                             phi = wp.atan2(lobe.wo[1], wp.max(lobe.wo[2], 0.0))
-                            lobe.row = table_row(tables, phi, l.xi)
+                            lobe.row = table_row(tables, phi, laid.xi)
                             lobe.sin_theta = -wp.clamp(lobe.wo[0], -1.0, 1.0)
                     else:
                         lobe.scale = 1.0 / (1.0 - p)
@@ -147,7 +147,7 @@ def make_bounce(key: KernelKey, rotated, emission_at):
         """Weight of light that goes straight through: what specular reflection leaves (all of it for cut-outs)."""
         result = wp.vec3(1.0, 1.0, 1.0)
         if m.presence == 0 and m.opacity_threshold <= 0.0:
-            result = result - specular_bound(base, wp.dot(s.ns, wo))
+            result = result - base_fresnel(base, wp.dot(s.ns, wo))
         return result
 
     @wp.func

@@ -74,35 +74,35 @@ def make_direct(key: KernelKey, transmittance):
     of_mesh = [model.geometry for model in models]
 
     @wp.func
-    def linked(links: wp.array2d(dtype=wp.uint8), l: Light, instance: int) -> bool:
+    def linked(links: wp.array2d(dtype=wp.uint8), light: Light, instance: int) -> bool:
         if wp.static(key.light_links):
-            if l.link >= 0 and instance >= 0:
-                return links[l.link, instance] != wp.uint8(0)
+            if light.link >= 0 and instance >= 0:
+                return links[light.link, instance] != wp.uint8(0)
         return True
 
     @wp.func
     def arrives(
         g: Geometry,
         arrays: MaterialArrays,
-        l: Light,
+        light: Light,
         origin: wp.vec3,
         wi: wp.vec3,
         distance: float,
     ) -> wp.vec3:
         result = wp.vec3(1.0, 1.0, 1.0)
-        if l.shadow != 0:
-            reach = wp.min(distance * 0.9999, l.shadow_distance)
+        if light.shadow != 0:
+            reach = wp.min(distance * 0.9999, light.shadow_distance)
             t = transmittance(g, arrays, origin, wi, reach)
-            result = t * result + (1.0 - t) * l.shadow_color
+            result = t * result + (1.0 - t) * light.shadow_color
         return result
 
     @wp.func
-    def on_base(lobe: Lobe, l: Light, ls: LightSample, wi: wp.vec3) -> wp.vec3:
+    def on_base(lobe: Lobe, light: Light, ls: LightSample, wi: wp.vec3) -> wp.vec3:
         w_diffuse = lobe.w_diffuse
         w_specular = lobe.w_specular
         if wp.static(key.light_multipliers):
-            w_diffuse *= l.diffuse
-            w_specular *= l.specular
+            w_diffuse *= light.diffuse
+            w_specular *= light.specular
         terms = base_eval_pdf(lobe.base, lobe.wo, wi, w_diffuse, w_specular)
         value = wp.cw_mul(terms.value, ls.radiance)
         if ls.pdf > 0.0:
@@ -113,16 +113,16 @@ def make_direct(key: KernelKey, transmittance):
         return value
 
     @wp.func
-    def cone_span(light_arrays: LightArrays, kind: int, l: Light, p: wp.vec3, lobe: Lobe, toward: wp.vec3) -> Span:
+    def cone_span(light_arrays: LightArrays, kind: int, light: Light, p: wp.vec3, lobe: Lobe, toward: wp.vec3) -> Span:
         span = Span()
-        if l.delta == 1:
+        if light.delta == 1:
             span = span_cap(toward, PSI, lobe.frame.x, lobe.frame.y, lobe.frame.n, lobe.sin_theta)
         else:
             for j in range(wp.static(len(models))):
                 if wp.static(finite[j]):
                     if kind == j:
                         span = wp.static(models[j].span)(
-                            light_arrays, l, p, lobe.frame.x, lobe.frame.y, lobe.frame.n, lobe.sin_theta
+                            light_arrays, light, p, lobe.frame.x, lobe.frame.y, lobe.frame.n, lobe.sin_theta
                         )
         return span
 
@@ -147,27 +147,27 @@ def make_direct(key: KernelKey, transmittance):
         total = wp.vec3(0.0, 0.0, 0.0)
         for j in range(wp.static(len(models))):
             for i in range(starts[j], starts[j + 1]):
-                l = lights[i]
-                if linked(links, l, instance):
+                light = lights[i]
+                if linked(links, light, instance):
                     u = sobol_2d(index, dimension + i, seed)
                     if lobe.scratch != 1:
-                        ls = wp.static(models[j].sample)(light_arrays, l, p, u)
+                        ls = wp.static(models[j].sample)(light_arrays, light, p, u)
                         if ls.pdf != 0.0 and wp.dot(ls.wi, ng) > 0.0:
-                            value = on_base(lobe, l, ls, to_local(lobe.frame, ls.wi))
+                            value = on_base(lobe, light, ls, to_local(lobe.frame, ls.wi))
                             if wp.max(wp.max(value[0], value[1]), value[2]) > 0.0:
-                                total += wp.cw_mul(value, arrives(g, arrays, l, p, ls.wi, ls.distance))
+                                total += wp.cw_mul(value, arrives(g, arrays, light, p, ls.wi, ls.distance))
                     if wp.static(key.scratches):
                         if lobe.scratch == 1:
                             if wp.static(finite[j]):
                                 toward = wp.vec3(0.0, 0.0, 1.0)
                                 e = wp.vec3(0.0, 0.0, 0.0)
                                 far = float(0.0)
-                                if l.delta == 1:
-                                    ls = wp.static(models[j].sample)(light_arrays, l, p, u)
+                                if light.delta == 1:
+                                    ls = wp.static(models[j].sample)(light_arrays, light, p, u)
                                     toward = ls.wi
                                     e = ls.radiance
                                     far = ls.distance
-                                span = cone_span(light_arrays, j, l, p, lobe, toward)
+                                span = cone_span(light_arrays, j, light, p, lobe, toward)
                                 if span.ok == 1 and span.hi > span.lo:
                                     phi = span.lo + u[0] * (span.hi - span.lo)
                                     w = cone_direction(lobe.frame.x, lobe.frame.y, lobe.frame.n, lobe.sin_theta, phi)
@@ -175,18 +175,18 @@ def make_direct(key: KernelKey, transmittance):
                                         tables, lobe.table, lobe.row, phi_bin(tables, phi), lobe.sin_theta
                                     )
                                     value = row_value * (wp.cos(phi) * (span.hi - span.lo))
-                                    if l.delta == 1:
+                                    if light.delta == 1:
                                         x = wp.acos(wp.clamp(wp.dot(w, toward), -1.0, 1.0)) / PSI
                                         f = wp.max(1.0 - x * x, 0.0)
                                         value = wp.cw_mul(value, e) * (3.0 * f * f / (wp.pi * PSI * PSI))
                                         w = toward
                                     else:
-                                        hit = wp.static(models[j].hit)(light_arrays, l, p, w)
+                                        hit = wp.static(models[j].hit)(light_arrays, light, p, w)
                                         if wp.static(of_mesh[j]):
                                             met = intersect(g, p, w, 1.0e10)
                                             if met.face >= 0:
                                                 if met.light == i and met.outside == 1:
-                                                    hit = mesh_light_hit(light_arrays, l, p, w, met.t, met.ng)
+                                                    hit = mesh_light_hit(light_arrays, light, p, w, met.t, met.ng)
                                         far = hit.distance
                                         weight = float(0.0)
                                         if hit.distance >= 0.0:
@@ -195,9 +195,9 @@ def make_direct(key: KernelKey, transmittance):
                                             )
                                         value = wp.cw_mul(value, hit.radiance) * weight
                                     if wp.static(key.light_multipliers):
-                                        value = value * l.specular
+                                        value = value * light.specular
                                     if wp.max(wp.max(value[0], value[1]), value[2]) > 0.0 and wp.dot(w, ng) > 0.0:
-                                        total += wp.cw_mul(value, arrives(g, arrays, l, p, w, far))
+                                        total += wp.cw_mul(value, arrives(g, arrays, light, p, w, far))
         return total * lobe.scale
 
     @wp.func
@@ -226,12 +226,12 @@ def make_direct(key: KernelKey, transmittance):
         for j in range(wp.static(len(models))):
             if wp.static(not of_mesh[j]):
                 for i in range(starts[j], starts[j + 1]):
-                    l = lights[i]
-                    wanted = linked(links, l, instance)
-                    if depth == 0 and l.camera_visible == 0:
+                    light = lights[i]
+                    wanted = linked(links, light, instance)
+                    if depth == 0 and light.camera_visible == 0:
                         wanted = False
                     if wanted:
-                        hit = wp.static(models[j].hit)(light_arrays, l, p, w)
+                        hit = wp.static(models[j].hit)(light_arrays, light, p, w)
                         if hit.distance >= gone and hit.distance < reach:
                             weight = float(1.0)
                             if pdf > 0.0:
@@ -240,7 +240,7 @@ def make_direct(key: KernelKey, transmittance):
                                     if lobe.scratch == 1:
                                         other = 0.0
                                         if wp.static(finite[j]):
-                                            span = cone_span(light_arrays, j, l, p, lobe, w)
+                                            span = cone_span(light_arrays, j, light, p, lobe, w)
                                             if span.ok == 1 and span.hi > span.lo:
                                                 if phi >= span.lo and phi <= span.hi:
                                                     other = 1.0 / (span.hi - span.lo)
@@ -252,7 +252,7 @@ def make_direct(key: KernelKey, transmittance):
                                     if pdf > 0.0 and lobe.scratch != 1:
                                         weight = 0.0
                                     else:
-                                        weight *= l.specular
+                                        weight *= light.specular
                             total += hit.radiance * weight
                             if wp.static(finite[j]):
                                 met = 1.0

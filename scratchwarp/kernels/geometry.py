@@ -1,5 +1,6 @@
 """Scene -> world triangles with a bounding volume hierarchy."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -120,10 +121,13 @@ def _instance_arrays(
     return arrays
 
 
-def pack(scene: Scene, directed: bool, colored: bool, device: str = "cpu") -> PackedGeometry:
+def pack(
+    scene: Scene, directed: bool, colored: bool, emitters: Mapping[int, int], device: str = "cpu"
+) -> PackedGeometry:
     """Flatten every instance into world triangles.
 
-    ``directed``: some material has a direction, so build tangents; ``colored``: some material shows display colours.
+    ``directed``: some material has a direction, so build tangents; ``colored``: some material shows display colours;
+    ``emitters``: instance -> the mesh light that it is, as the kernel numbers lights.
     """
     parts: list[dict[str, Array]] = []
     for number, instance in enumerate(scene.instances):
@@ -132,7 +136,7 @@ def pack(scene: Scene, directed: bool, colored: bool, device: str = "cpu") -> Pa
             part = _instance_arrays(mesh, instance, scene.materials, directed)
             m = len(mesh.triangles)
             part["instance"] = np.full(m, number, np.int32)
-            part["light"] = np.full(m, instance.light, np.int32)
+            part["light"] = np.full(m, emitters.get(number, -1), np.int32)
             if colored and "colors" not in part:
                 part["colors"] = np.full((m, 3, 3), 0.18, np.float32)
             parts.append(part)

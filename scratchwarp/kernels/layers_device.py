@@ -1,4 +1,4 @@
-"""How much each layer covers under a sample's footprint, and one of them drawn in proportion (Raymond 2016 Eq. 3, 4)."""
+"""What each layer covers under a sample's footprint, and one of them drawn in proportion (Raymond 2016 Eq. 3, 4)."""
 
 import warp as wp
 

@@ -129,7 +129,7 @@ def make_kernel(key: KernelKey):
                 if last == 0 or known[0] + known[1] + known[2] > 0.0:
                     s = intersect(g, start, direction, reach)
                     rays += 1
-                    limit = gone + wp.where(s.face >= 0, s.t, reach)
+                    limit = wp.where(s.face >= 0, gone + s.t, 1.0e30)
                     known = seen(
                         light_arrays,
                         lights,

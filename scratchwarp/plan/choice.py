@@ -40,7 +40,7 @@ class TablePlan:
 
 @dataclass(frozen=True, eq=False)
 class LayerPlan:
-    """A sublayer to render: its table (-1: a diffuse scratch), and whether the base's diffuse term is seen through it."""
+    """A sublayer to render, its table (-1: a diffuse scratch), and whether the base's diffuse term shows through."""
 
     sublayer: Any
     table: int

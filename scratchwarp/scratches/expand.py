@@ -1,8 +1,8 @@
 """A Layer as the author wrote it -> the sublayers that the kernel runs through.
 
 ``random``, ``crosshatch`` and a ``worley`` layer of several patterns are sets of parallel scratches, each set turned by
-one angle picked within the spread, as in Raymond 2016 section 5.3. Sublayers share what the layer covers so that, laid at random over one
-another, they cover as much as the author asked for: 1 - (1 - a)^(1/n) each.
+one angle picked within the spread, as in Raymond 2016 section 5.3. Sublayers share what the layer covers so that, laid
+at random over one another, they cover as much as the author asked for: 1 - (1 - a)^(1/n) each.
 """
 
 import math
@@ -97,7 +97,7 @@ def sublayers(layer: Layer) -> tuple[Sublayer, ...]:
 def bend(layer: Layer) -> tuple[float, float]:
     """(amplitude, wave number) of the sideways wave whose sharpest turn is ``curvature`` radians a scratch length.
 
-    With f = A sin(k x), k = 2 pi / (4 length), the slope turns by at most A k^2 a unit, so A = curvature / (k^2 length).
+    With f = A sin(k x), k = 2 pi / (4 length), the slope turns by at most A k^2 a unit: A = curvature / (k^2 length).
     """
     length = max(layer.length, layer.width)
     if layer.curvature == 0.0 or length <= 0.0:

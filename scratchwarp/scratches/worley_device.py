@@ -82,7 +82,7 @@ def chord_coverage(
                 cx = ix + row
                 cy = iy + column
             h1 = pcg_hash(wp.uint32(cx) ^ pcg_hash(wp.uint32(cy) ^ seed))
-            h2 = pcg_hash(h1 + wp.uint32(0x9E3779B9))
+            h2 = pcg_hash(h1 ^ wp.uint32(0x3C6EF372))
             fx = float(column) + unit_float(h1)
             fy = float(row) + unit_float(h2)
             if swap:
@@ -90,7 +90,7 @@ def chord_coverage(
                 fy = float(row) + unit_float(h1)
             r = radius
             if variation > 0.0:
-                r = radius * (1.0 + variation * (2.0 * unit_float(pcg_hash(h2 + wp.uint32(0x85EBCA6B))) - 1.0))
+                r = radius * (1.0 + variation * (2.0 * unit_float(pcg_hash(h2 ^ wp.uint32(0x15EBCA6B))) - 1.0))
             to = wp.vec2(start[0] - fx, start[1] - fy)
             c = wp.dot(to, to) - r * r
             if length2 < 1.0e-10:

@@ -1,0 +1,124 @@
+"""Scene + EffectPlan + simulated tables -> the kernel's key and arguments."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import warp as wp
+
+from .. import lights
+from ..lights.light_device import Light
+from ..plan import EffectPlan
+from ..reflectance import profile_table
+from ..scene import MeshLight, Scene
+from ..scratches import KINDS
+from . import geometry, material
+from .camera_device import CameraData
+from .key import KernelKey
+
+
+@dataclass(frozen=True, eq=False)
+class Assembled:
+    """What a render launches.
+
+    Attributes:
+        key: specialisation. inputs: arguments after the window and before the film, in the kernel's order.
+        alive: objects that must outlive the launches. warnings: what cannot be honoured.
+    """
+
+    key: KernelKey
+    inputs: tuple[Any, ...]
+    alive: tuple[Any, ...]
+    warnings: tuple[str, ...]
+
+
+def light_kinds(plan: EffectPlan) -> tuple[str, ...]:
+    """Kinds of light that are on, in the registry's order."""
+    return tuple(m.name for m in lights.MODELS.values() if plan.on(f"lights.{m.name}"))
+
+
+def kernel_key(scene: Scene, plan: EffectPlan) -> KernelKey:
+    """The specialisation that a plan calls for; effects that are off leave no trace in it."""
+    on = plan.on
+    kinds = light_kinds(plan)
+    distributions = tuple(k for k in KINDS if on(f"scratches.{k}")) if on("scratches") else ()
+    assert plan.settings.filter is not None
+    return KernelKey(
+        lights=kinds,
+        distributions=distributions,
+        filter=plan.settings.filter,
+        directed=on("base.direction"),
+        lens=on("lens"),
+        orthographic=scene.camera.projection == "orthographic",
+        shadows=on("shadows"),
+        opacity=on("base.opacity"),
+        emission=on("base.emission"),
+        normal_maps=on("base.normalMaps"),
+        display_colors=on("base.displayColor"),
+        textures=on("base.textures"),
+        preview=on("base.preview"),
+        measured=on("base.measured"),
+        diffuse_scratches=bool(distributions) and on("scratches.diffuse"),
+        light_links=on("lights.links"),
+        light_multipliers=on("lights.multipliers"),
+        mesh_lights="mesh" in kinds,
+        path=on("indirect"),
+    )
+
+
+def camera_data(scene: Scene, plan: EffectPlan) -> CameraData:
+    """The camera's window over the whole image, with the footprint of one of the plan's samples."""
+    camera, (width, height) = scene.camera, plan.size
+    left, right, bottom, top = camera.window(width, height, scene.options.conform, scene.options.pixel_aspect)
+    c = CameraData()
+    m = camera.transform
+    c.position = wp.vec3(*m[:3, 3].tolist())
+    c.right, c.up, c.back = (wp.vec3(*(m[:3, k] / np.linalg.norm(m[:3, k])).tolist()) for k in range(3))
+    c.left, c.top = left, top
+    c.pixel_x, c.pixel_y = (right - left) / width, (top - bottom) / height
+    c.near, c.far = max(camera.near, 0.0), min(camera.far, 1e10)
+    c.lens_radius = camera.lens_radius if plan.on("lens") else 0.0
+    c.focus_distance, c.exposure = camera.focus_distance, camera.exposure
+    assert plan.settings.spp is not None
+    # samples share the pixel: each stands for an area of 1 / spp of it
+    c.footprint = 1.0 / np.sqrt(plan.settings.spp)
+    return c
+
+
+def assemble(scene: Scene, plan: EffectPlan, tables: Sequence[Any], device: str = "cpu") -> Assembled:
+    """Build the device data that the plan's effects need, and nothing else."""
+    key = kernel_key(scene, plan)
+    packed = lights.pack(scene, device)
+    kinds = [k for k in packed.kinds if k in key.lights]
+    order = {name: i for i, name in enumerate(key.lights)}
+    rows = [packed.lights[k].numpy() if k in kinds else np.zeros(0, Light.numpy_dtype()) for k in key.lights]
+    starts = np.concatenate([[0], np.cumsum([len(r) for r in rows])]).astype(np.int32)
+    flat = np.full(max(len(scene.lights), 1), -1, np.int32)
+    for number, (record, slot) in enumerate(zip(scene.lights, packed.slots, strict=True)):
+        name = lights.MODELS[type(record)].name
+        if name in order:
+            flat[number] = starts[order[name]] + slot
+    table = np.concatenate(rows) if len(rows) and starts[-1] else np.zeros(1, Light.numpy_dtype())
+    light_array = wp.array(table, dtype=Light, device=device)
+    links = np.ones((max(len(scene.lights), 1), max(len(scene.instances), 1)), np.uint8)
+    for number, record in enumerate(scene.lights):
+        if record.linked is not None:
+            links[number] = [i in record.linked for i in range(links.shape[1])]
+
+    emitters = {r.instance: int(flat[n]) for n, r in enumerate(scene.lights) if isinstance(r, MeshLight)}
+    shape = geometry.pack(scene, key.directed, key.display_colors, emitters, device)
+    layers = [[material.pack_layer(p) for p in own] for own in plan.layers] if key.distributions else None
+    stuff = material.pack(scene, layers or [[] for _ in scene.materials], device)
+    inputs = (
+        camera_data(scene, plan),
+        shape.arrays,
+        stuff.arrays,
+        stuff.layers,
+        profile_table.pack(tables, device),
+        packed.arrays,
+        light_array,
+        wp.array(starts, dtype=int, device=device),
+        wp.array(links, dtype=wp.uint8, device=device),
+    )
+    return Assembled(key, inputs, (shape, stuff, packed), packed.warnings)

@@ -1,0 +1,86 @@
+"""Sums of the kernel -> AOVs and the header of image files."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from .. import __version__
+from ..plan import EffectPlan
+from ..scene import Scene
+
+
+def aovs(sums: Mapping[str, np.ndarray], scene: Scene, samples: int) -> dict[str, np.ndarray]:
+    """Divide sums over samples [h, w] into AOVs. ``samples``: of each pixel.
+
+    Samples that were not finite are left out of the mean of their pixel (``stats`` counts them).
+    """
+    good = np.maximum(samples - sums["invalid"], 1).astype(np.float32)
+    hits = np.maximum(sums["hits"], 1).astype(np.float32)
+    seen = sums["hits"] > 0
+
+    def mean(name: str) -> np.ndarray:
+        return (sums[name] / good[..., None]).astype(np.float32)
+
+    def over_hits(name: str) -> np.ndarray:
+        value = sums[name] / (hits[..., None] if sums[name].ndim == 3 else hits)
+        return np.asarray(value, np.float32)
+
+    color, base, scratches = mean("color"), mean("base"), mean("scratches")
+    normal = over_hits("normal")
+    length = np.linalg.norm(normal, axis=-1, keepdims=True)
+    normal = np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)
+    luminance = color @ np.array([0.2126, 0.7152, 0.0722], np.float32)
+    spread = np.maximum(sums["square"] / good - luminance**2, 0.0)
+    position = (over_hits("position").astype(np.float64) + scene.origin).astype(np.float32)
+    return {
+        "color": color,
+        "alpha": np.minimum(sums["alpha"] / np.float32(samples), 1.0).astype(np.float32),
+        "depth": np.where(seen, over_hits("depth"), np.inf).astype(np.float32),
+        "normal": normal,
+        "albedo": np.clip(over_hits("albedo"), 0.0, 1.0),
+        "P": np.where(seen[..., None], position, 0.0).astype(np.float32),
+        "primId": np.where(seen, sums["instance"], -1).astype(np.int32),
+        "base": base,
+        "scratches": scratches,
+        "emission": (color - base - scratches).astype(np.float32),
+        "variance": (spread / np.maximum(good - 1.0, 1.0)).astype(np.float32),
+    }
+
+
+def metadata(scene: Scene, plan: EffectPlan, digest: str, wall: float, cpu: float) -> dict[str, Any]:
+    """Header entries: software, settings hash, samples, seed, seconds, camera matrices (row vectors)."""
+    camera, (width, height) = scene.camera, plan.size
+    to_camera = np.linalg.inv(camera.transform)
+    shift = np.eye(4)
+    shift[:3, 3] = -scene.origin
+    world_to_camera = to_camera @ shift
+    left, right, bottom, top = camera.window(width, height, scene.options.conform, scene.options.pixel_aspect)
+    near = max(camera.near, 1e-3)
+    far = min(camera.far, 1e10)
+    ndc = np.zeros((4, 4))
+    ndc[0, 0], ndc[1, 1] = 2.0 / (right - left), 2.0 / (top - bottom)
+    if camera.projection == "perspective":
+        ndc[0, 2], ndc[1, 2] = (right + left) / (right - left), (top + bottom) / (top - bottom)
+        ndc[2, 2], ndc[2, 3] = -(far + near) / (far - near), -2.0 * far * near / (far - near)
+        ndc[3, 2] = -1.0
+    else:
+        ndc[0, 3], ndc[1, 3] = -(right + left) / (right - left), -(top + bottom) / (top - bottom)
+        ndc[2, 2], ndc[2, 3], ndc[3, 3] = -2.0 / (far - near), -(far + near) / (far - near), 1.0
+    s = plan.settings
+    entries = {
+        "Software": f"scratchwarp {__version__}",
+        "scratchwarp:settings": digest,
+        "scratchwarp:stage": scene.path,
+        "scratchwarp:spp": s.spp,
+        "scratchwarp:seed": s.seed,
+        "scratchwarp:integrator": s.integrator,
+        "scratchwarp:seconds": wall,
+        "scratchwarp:cpuSeconds": cpu,
+        "scratchwarp:effects": " ".join(n for n, c in plan.effects.items() if c.enabled),
+        "worldToCamera": tuple(world_to_camera.T.ravel().tolist()),
+        "worldToNDC": tuple((ndc @ world_to_camera).T.ravel().tolist()),
+    }
+    if scene.time is not None:
+        entries["scratchwarp:timeCode"] = float(scene.time)
+    return entries

@@ -1,0 +1,217 @@
+"""render: simulate the plan's tables, build its kernel, trace its tiles."""
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import warp as wp
+
+from .. import __version__, profiles
+from ..kernels import KernelKey, assemble
+from ..kernels.film_device import FilmArrays, Window
+from ..plan import EffectPlan
+from ..scene import Scene
+from . import checkpoint as checkpoints
+from . import develop
+from .film import Film
+from .progress import silent
+from .tiles import Tile, run, tiles
+
+Progress = Callable[[int, int, str], None]
+# Samples of one launch: long enough to hide its overhead, short enough to stop between launches.
+SAMPLES_A_LAUNCH = 32
+# Seconds between checkpoints.
+CHECKPOINT_EVERY = 10.0
+_SUMS = {
+    "color": wp.vec3,
+    "base": wp.vec3,
+    "scratches": wp.vec3,
+    "square": float,
+    "albedo": wp.vec3,
+    "normal": wp.vec3,
+    "position": wp.vec3,
+    "depth": float,
+    "alpha": float,
+    "hits": int,
+    "nearest": float,
+    "instance": int,
+    "rays": int,
+    "invalid": int,
+}
+_compiled: set[KernelKey] = set()
+
+
+def simulate_tables(plan: EffectPlan, threads: int, progress: Progress = silent) -> list[profiles.Table]:
+    """The plan's profile tables, in order."""
+    made = []
+    for number, table in enumerate(plan.tables):
+        progress(number, len(plan.tables), "simulate")
+        made.append(
+            profiles.simulate(
+                table.profile,
+                resolution=table.resolution,
+                rays=table.rays,
+                fresnel=table.fresnel,
+                max_bounces=table.max_bounces,
+                threads=threads,
+            )
+        )
+    if plan.tables:
+        progress(len(plan.tables), len(plan.tables), "simulate")
+    return made
+
+
+def _film_arrays(width: int, height: int, device: str) -> FilmArrays:
+    film = FilmArrays()
+    for name, dtype in _SUMS.items():
+        setattr(film, name, wp.zeros((height, width), dtype=dtype, device=device))
+    film.nearest.fill_(1e30)
+    film.instance.fill_(-1)
+    return film
+
+
+def render(
+    scene: Scene,
+    plan: EffectPlan,
+    progress: Progress | None = None,
+    checkpoint: str | Path | None = None,
+    resume: bool = False,
+    device: str = "cpu",
+) -> Film:
+    """Render a planned scene.
+
+    Args:
+        progress: called with (done, total, what) as work proceeds.
+        checkpoint: file that finished tiles are kept in while rendering and after an interruption; removed at the end.
+        resume: go on from ``checkpoint`` when it exists; the image has the same bits as one rendered at once.
+        device: Warp device.
+
+    The image does not depend on ``threads`` or ``tile``. Raises ValueError on a checkpoint of another render.
+    """
+    progress = progress or silent
+    settings = plan.settings
+    threads, spp = settings.threads or 1, settings.spp or 1
+    wp.config.quiet = True
+    wp.init()
+    clock, cpu = time.perf_counter(), time.process_time()
+    tables = simulate_tables(plan, threads, progress)
+    simulated = time.perf_counter()
+    built = assemble(scene, plan, tables, device)
+
+    from ..kernels.render_device import make_kernel
+
+    kernel = make_kernel(built.key)
+    fresh = built.key not in _compiled
+    if fresh:
+        progress(0, 1, "compile")
+    wp.load_module(kernel.module, device=device)
+    _compiled.add(built.key)
+    if fresh:
+        progress(1, 1, "compile")
+    compiled = time.perf_counter()
+
+    x0, x1, y0, y1 = plan.window
+    width, height = x1 - x0, y1 - y0
+    film = _film_arrays(width, height, device)
+    jobs = tiles(width, height, settings.tile)
+    total = width * height * spp
+    key = checkpoints.digest(
+        __version__,
+        scene_digest(scene),
+        plan.settings.seed,
+        spp,
+        plan.size,
+        plan.window,
+        jobs[0],
+        built.key,
+        settings.filter_width,
+        settings.max_depth,
+    )
+    on_cpu = wp.get_device(device).is_cpu
+    finished = np.zeros(len(jobs), bool)
+    views = {name: getattr(film, name).numpy() for name in _SUMS} if on_cpu else {}
+    if checkpoint and resume:
+        stored = checkpoints.load(checkpoint, key, views)
+        finished = finished if stored is None else stored
+    position = {tile: i for i, tile in enumerate(jobs)}
+    state = {"done": sum(t.width * t.height for t in jobs if finished[position[t]]) * spp, "launches": 0}
+    last = [time.perf_counter()]
+
+    def worker() -> Callable[[Tile], None]:
+        window = Window()
+        window.x0, window.y0, window.seed = x0, y0, settings.seed or 0
+        window.filter_width, window.max_depth = settings.filter_width, settings.max_depth
+        if settings.integrator == "direct":
+            window.max_depth = 1
+        command = wp.launch(
+            kernel, dim=1, inputs=[window, *built.inputs, film], device=device, record_cmd=True, record_tape=False
+        )
+
+        def work(tile: Tile) -> None:
+            window.tile_x, window.tile_y, window.tile_w, window.tile_h = tile.x, tile.y, tile.width, tile.height
+            command.set_dim(tile.width * tile.height)
+            for first in range(0, spp, SAMPLES_A_LAUNCH):
+                window.first, window.count = first, min(SAMPLES_A_LAUNCH, spp - first)
+                command.set_param_at_index(0, window)
+                command.launch()
+
+        return work
+
+    def done(tile: Tile) -> None:
+        finished[position[tile]] = True
+        state["done"] += tile.width * tile.height * spp
+        state["launches"] += -(-spp // SAMPLES_A_LAUNCH)
+        progress(state["done"], total, "trace")
+        if checkpoint and time.perf_counter() - last[0] > CHECKPOINT_EVERY:
+            checkpoints.save(checkpoint, key, finished, views)
+            last[0] = time.perf_counter()
+
+    progress(state["done"], total, "trace")
+    todo = [t for t in jobs if not finished[position[t]]]
+    try:
+        run(todo, [worker() for _ in range(max(1, min(threads if on_cpu else 1, len(todo))))], done)
+    except BaseException:
+        if checkpoint:
+            checkpoints.save(checkpoint, key, finished, views)
+        raise
+    if not on_cpu:
+        wp.synchronize_device(device)
+    if checkpoint:
+        Path(checkpoint).unlink(missing_ok=True)
+    traced = time.perf_counter()
+
+    sums = {name: getattr(film, name).numpy() for name in _SUMS}
+    images = develop.aovs(sums, scene, spp)
+    invalid = int(sums["invalid"].sum())
+    warnings = built.warnings + plan.warnings
+    if invalid:
+        warnings += (f"{invalid} of {total} samples were not finite and were left out",)
+    stats: dict[str, Any] = {
+        "read": scene.seconds,
+        "plan": plan.seconds,
+        "simulate": simulated - clock,
+        "compile": compiled - simulated,
+        "trace": traced - compiled,
+        "write": 0.0,
+        "rays": int(sums["rays"].sum()),
+        "samples": total,
+        "kernels_compiled": int(fresh),
+        "kernels_launched": state["launches"],
+        "tables_simulated": len(tables),
+        "invalid_samples": invalid,
+    }
+    header = develop.metadata(scene, plan, key, traced - clock, time.process_time() - cpu)
+    return Film(images, stats, header, plan.size, plan.window, warnings)
+
+
+def scene_digest(scene: Scene) -> str:
+    """Hash of the geometry, materials, lights and camera that decide an image."""
+    parts: list[Any] = [scene.path, scene.time, scene.camera.transform]
+    for mesh in scene.meshes:
+        parts += [mesh.points, mesh.triangles]
+    parts += [i.transform for i in scene.instances]
+    parts += [repr(m) for m in scene.materials]
+    parts += [repr(light) for light in scene.lights]
+    return checkpoints.digest(*parts)
