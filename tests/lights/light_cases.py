@@ -102,6 +102,11 @@ def sphere_directions(count, seed=0):
     return w / np.linalg.norm(w, axis=-1, keepdims=True)
 
 
+def corners_of(light):
+    """The four corners of a rect light, around."""
+    return np.array([light.center + a * light.ex + b * light.ey for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
+
+
 def polygon_irradiance(corners, x, n):
     """Lambert's formula for a polygon of radiance 1 above the horizon, in float64."""
     d = np.asarray(corners, float) - x

@@ -10,6 +10,7 @@ from .light_cases import (
     ORIGIN,
     TURN,
     UP,
+    corners_of,
     cylinder,
     disk,
     distant,
@@ -95,14 +96,10 @@ RECTS = {
 }
 
 
-def corners(light):
-    return np.array([light.center + a * light.ex + b * light.ey for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
-
-
 @pytest.mark.parametrize("name", RECTS)
 def test_rect(name):
     light = rect(**RECTS[name])
-    expected = polygon_irradiance(corners(light), ORIGIN, UP)
+    expected = polygon_irradiance(corners_of(light), ORIGIN, UP)
     # the sheared one is sampled by area
     assert irradiance(light) == pytest.approx(expected, rel=5e-3 if name == "sheared" else CLOSE)
 
@@ -211,7 +208,7 @@ def test_latlong_directions(toward, column, row):
 
 
 def test_mesh_matches_the_rect_of_its_shape():
-    expected = polygon_irradiance(corners(rect()), ORIGIN, UP)
+    expected = polygon_irradiance(corners_of(rect()), ORIGIN, UP)
     assert irradiance(packed_mesh()) == pytest.approx(expected, rel=3e-3)
 
 
