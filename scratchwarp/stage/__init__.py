@@ -10,7 +10,8 @@ Files, from the outside in:
     camera          the camera
     traverse        which prims can be seen, and where: instances, point instancers, visibility, purposes
     geometry        which reader reads which geometric prim
-    mesh            UsdGeomMesh; triangulate, primvar, normals are its parts
+    mesh            UsdGeomMesh; triangulate, primvar, normals, vectors are its parts
+    shapes          spheres, cubes, planes, cylinders, cones, capsules
     place           instances; binding says which material goes where
     material        UsdShadeMaterial: preview, scratch_surface, texture_input, texture, layer
     curves          explicit scratches; curve_basis samples them

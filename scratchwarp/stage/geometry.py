@@ -11,9 +11,13 @@ from scratchwarp.scene import Mesh
 from .mesh import read_mesh
 from .primvar import uv_primvars
 from .reading import Reading, shared_path
+from .shapes import BUILDERS, read_shape
 from .traverse import Placed
 
-READERS: dict[str, Callable[[Reading, Usd.Prim], Mesh | None]] = {"Mesh": read_mesh}
+READERS: dict[str, Callable[[Reading, Usd.Prim], Mesh | None]] = {
+    "Mesh": read_mesh,
+    **dict.fromkeys(BUILDERS, read_shape),
+}
 """Type name of a geometric prim -> its reader."""
 
 _INHERITED = ("displayColor", "tangents")
@@ -28,7 +32,7 @@ class Geometry:
 
     def bounds(self) -> tuple[np.ndarray, np.ndarray] | None:
         """Lower and upper corner of everything in world space [scene units]; None where there is nothing."""
-        boxes = [np.array([m.points[m.triangles].min((0, 1)), m.points[m.triangles].max((0, 1))]) for m in self.meshes]
+        boxes = [_box(mesh) for mesh in self.meshes]
         corners = []
         for placed, index in self.placements:
             eight = np.stack(np.meshgrid(*boxes[index].T, indexing="ij"), axis=-1).reshape(-1, 3)
@@ -37,6 +41,14 @@ class Geometry:
             return None
         every = np.concatenate(corners)
         return every.min(0), every.max(0)
+
+
+def _box(mesh: Mesh) -> np.ndarray:
+    """Corners [2, 3] of the box about the points that triangles use."""
+    used = np.zeros(len(mesh.points), bool)
+    used[mesh.triangles.ravel()] = True
+    points = mesh.points[used]
+    return np.array([points.min(0), points.max(0)])
 
 
 def read_geometry(reading: Reading, places: Sequence[Placed]) -> Geometry:

@@ -6,10 +6,11 @@ from pxr import Usd, UsdGeom, UsdShade
 from scratchwarp.scene import Mesh, StageError
 
 from .color import color
-from .normals import facets, normalized, smooth
+from .normals import filled, smooth
 from .primvar import Corners, read_primvar, spread, uv_primvars
 from .reading import Reading
 from .triangulate import triangulate
+from .vectors import unit
 
 UV_SET = "st"
 SUBDIVIDED = "subdivision surface; its control cage is rendered with smooth normals"
@@ -111,13 +112,15 @@ def _normals(reading: Reading, mesh: UsdGeom.Mesh, points: np.ndarray, corners: 
         return smooth(points, corners)
     primvar = UsdGeom.PrimvarsAPI(mesh).GetPrimvar("normals")
     if primvar and primvar.HasValue():
-        values = read_primvar(reading, primvar, corners, 3)
+        values = read_primvar(reading, primvar, corners, 3, _directions)
     else:
-        values = spread(reading, mesh.GetNormalsAttr(), corners, 3, mesh.GetNormalsInterpolation())
-    if values is None:
-        return None
-    flat = facets(points, corners.points)
-    return normalized(values, np.broadcast_to(flat[:, None, :], values.shape))
+        how = mesh.GetNormalsInterpolation()
+        values = spread(reading, mesh.GetNormalsAttr(), corners, 3, how, convert=_directions)
+    return None if values is None else filled(values, points, corners.points)
+
+
+def _directions(vectors: np.ndarray) -> np.ndarray:
+    return unit(vectors)[0].astype(np.float32)
 
 
 def _uvs(reading: Reading, api: UsdGeom.PrimvarsAPI, path: str, corners: Corners) -> dict[str, np.ndarray]:
@@ -143,8 +146,7 @@ def _colors(reading: Reading, api: UsdGeom.PrimvarsAPI, corners: Corners) -> np.
     primvar = api.FindPrimvarWithInheritance("displayColor")
     if not (primvar and primvar.HasValue()):
         return None
-    values = read_primvar(reading, primvar, corners, 3)
-    return None if values is None else color(reading, primvar.GetAttr(), values)
+    return read_primvar(reading, primvar, corners, 3, lambda values: color(reading, primvar.GetAttr(), values))
 
 
 def _slots(reading: Reading, prim: Usd.Prim, corners: Corners) -> np.ndarray:

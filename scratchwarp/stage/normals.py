@@ -1,31 +1,15 @@
-"""Shading normals: the authored ones, or smooth ones of a control cage."""
+"""Shading normals of a control cage, and directions for normals that have none."""
 
 import numpy as np
 
 from .primvar import Corners
-
-
-def normalized(vectors: np.ndarray, otherwise: np.ndarray) -> np.ndarray:
-    """Unit vectors [..., 3], float32; those of no length become ``otherwise``."""
-    lengths = np.sqrt(np.einsum("...i,...i->...", vectors, vectors))[..., None]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        unit = vectors / lengths
-    return np.where(lengths > 1e-20, unit, otherwise).astype(np.float32)
+from .vectors import cross, lengths, unit
 
 
 def facets(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """Unit normals of triangles, shape [m, 3]; (0, 0, 1) where there is no area."""
-    p = points[triangles]
-    a, b = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
-    cross = np.stack(
-        [
-            a[:, 1] * b[:, 2] - a[:, 2] * b[:, 1],
-            a[:, 2] * b[:, 0] - a[:, 0] * b[:, 2],
-            a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0],
-        ],
-        axis=1,
-    )
-    return normalized(cross, np.array([0.0, 0.0, 1.0]))
+    """Unit normals of triangles that have an area, shape [m, 3]."""
+    a, b, c = (points[triangles[:, i]] for i in range(3))
+    return unit(cross(b - a, c - a))[0]
 
 
 def smooth(points: np.ndarray, corners: Corners) -> np.ndarray:
@@ -36,14 +20,22 @@ def smooth(points: np.ndarray, corners: Corners) -> np.ndarray:
     """
     triangles = corners.points
     facet = facets(points, triangles)
-    p = points[triangles]
+    p = [points[triangles[:, i]] for i in range(3)]
+    edges = [p[(i + 1) % 3] - p[i] for i in range(3)]
+    sizes = [lengths(e) for e in edges]
     total = np.zeros((len(points), 3))
     for i in range(3):
-        a, b = p[:, (i + 1) % 3] - p[:, i], p[:, (i + 2) % 3] - p[:, i]
-        length = np.sqrt(np.einsum("ij,ij->i", a, a) * np.einsum("ij,ij->i", b, b))
-        cosine = np.einsum("ij,ij->i", a, b) / np.maximum(length, 1e-300)
+        before, after = edges[i - 1], edges[i]
+        cosine = -np.einsum("ij,ij->i", before, after) / (sizes[i - 1] * sizes[i])
         angle = np.arccos(np.clip(cosine, -1.0, 1.0))
         for k in range(3):
             total[:, k] += np.bincount(triangles[:, i], angle * facet[:, k], minlength=len(points))
-    at_corners = total[triangles]
-    return normalized(at_corners, np.broadcast_to(facet[:, None, :], at_corners.shape))
+    return filled(unit(total)[0].astype(np.float32)[triangles], points, triangles)
+
+
+def filled(normals: np.ndarray, points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """Unit normals [m, 3, 3], those without a direction replaced by their facet's own."""
+    good = np.einsum("mci,mci->mc", normals, normals) > 0.5
+    if good.all():
+        return normals
+    return np.where(good[..., None], normals, facets(points, triangles)[:, None, :]).astype(np.float32)

@@ -37,7 +37,7 @@ def read_preview(reading: Reading, prim: Usd.Prim, textures: Textures) -> tuple[
     display_color = False
     for name, (field, default) in _COLORS.items():
         got = _value(reading, shader, name, default, textures)
-        if got == "displayColor":
+        if isinstance(got, str) and got == "displayColor":
             display_color = name == "diffuseColor"
             if not display_color:
                 reading.warn(prim.GetPath(), f"inputs:{name} reads displayColor; only diffuseColor can")

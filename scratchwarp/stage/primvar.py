@@ -1,11 +1,14 @@
 """Primvars of a mesh, spread over the corners of its triangles."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from pxr import Sdf, Usd, UsdGeom
 
 from .reading import Reading
+
+Convert = Callable[[np.ndarray], np.ndarray]
 
 UV_TYPES = (
     Sdf.ValueTypeNames.TexCoord2fArray,
@@ -49,11 +52,13 @@ def spread(
     width: int,
     interpolation: str,
     indices: np.ndarray | None = None,
+    convert: Convert | None = None,
 ) -> np.ndarray | None:
     """An attribute's values of ``width`` components at the corners of each triangle, shape [m, 3, width].
 
-    ``indices``: index of each element's value; None: the values themselves. Returns None when there is no value; also,
-    with a warning, when it has the wrong size or is not finite.
+    ``indices``: index of each element's value; None: the values themselves. ``convert`` is applied to the values before
+    they are spread. Returns None when there is no value; also, with a warning, when it has the wrong size or is not
+    finite.
     """
     got = attribute.Get(reading.time)
     if got is None:
@@ -76,15 +81,19 @@ def spread(
         return None
     if indices is not None:
         element = indices[element]
+    if convert is not None:
+        values = convert(values)
     return np.broadcast_to(values[element], (*corners.positions.shape, width))
 
 
-def read_primvar(reading: Reading, primvar: UsdGeom.Primvar, corners: Corners, width: int) -> np.ndarray | None:
+def read_primvar(
+    reading: Reading, primvar: UsdGeom.Primvar, corners: Corners, width: int, convert: Convert | None = None
+) -> np.ndarray | None:
     """``spread`` for a primvar, indexed or not."""
     indices = np.asarray(primvar.GetIndices(reading.time), np.int64) if primvar.IsIndexed() else None
     if indices is not None and not len(indices):
         indices = None
-    return spread(reading, primvar.GetAttr(), corners, width, primvar.GetInterpolation(), indices)
+    return spread(reading, primvar.GetAttr(), corners, width, primvar.GetInterpolation(), indices, convert)
 
 
 def uv_primvars(api: UsdGeom.PrimvarsAPI) -> list[UsdGeom.Primvar]:
