@@ -4,6 +4,7 @@ Lengths in centimetres, +Y up, micro-structure in micrometres.
 """
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from pxr import Sdf, Usd, UsdShade
@@ -63,44 +64,35 @@ def metal(stage: Usd.Stage, name: str, kind: str, roughness: float) -> UsdShade.
 
 
 def tiles(stage: Usd.Stage, detail: float) -> None:
-    """The middle tile under the ball and six around it."""
+    """The middle tile under the ball and six around it, from the right counter-clockwise seen from above."""
     side = np.arange(6) * np.pi / 3 + np.pi / 6
     slab = shapes.tile(REACH * np.stack([np.cos(side), -np.sin(side)], axis=-1), 0.6, 0.1)
-    step = REACH * np.sqrt(3) + GAP
-    engraved = rosette(stage, detail)
-    layers = [
-        (
-            "worley", "iron", 0.12,
-            {"width": 30.0, "depth": 5.0, "length": 8000.0, "coverage": 0.2, "patterns": 8, "angleSpread": 360.0},
-        ),
+    layers: list[tuple[str, str, float, dict[str, Any]]] = [
+        ("worley", "iron", 0.12, {"width": 30.0, "depth": 5.0, "length": 8000.0, "coverage": 0.2, "patterns": 8}),
+        ("spiral", "brass", 0.06, {"width": 220.0, "depth": 34.0, "pitch": 640.0}),
         ("linear", "aluminium", 0.06, {"width": 90.0, "depth": 14.0, "pitch": 260.0, "angle": 30.0}),
+        ("crosshatch", "iron", 0.1, {"width": 120.0, "depth": 26.0, "pitch": 900.0, "angle": 15.0, "crossAngle": 60.0}),
+        ("random", "aluminium", 0.08, {"width": 60.0, "depth": 14.0, "length": 14000.0, "coverage": 0.1}),
         ("concentric", "copper", 0.06, {"width": 160.0, "depth": 24.0, "pitch": 420.0}),
         ("curves", "gold", 0.06, {"width": 60.0, "depth": 16.0}),
-        ("crosshatch", "iron", 0.1, {"width": 120.0, "depth": 26.0, "pitch": 900.0, "angle": 15.0, "crossAngle": 60.0}),
-        (
-            "random", "aluminium", 0.08,
-            {"width": 60.0, "depth": 14.0, "length": 14000.0, "coverage": 0.1, "angleSpread": 70.0, "curvature": 15.0},
-        ),
-        ("spiral", "brass", 0.06, {"width": 220.0, "depth": 34.0, "pitch": 640.0}),
     ]
+    directions = {"worley": {"angleSpread": 360.0}, "random": {"angleSpread": 70.0, "curvature": 15.0}}
     for i, (distribution, kind, roughness, values) in enumerate(layers):
+        turn, step = (i - 1) * np.pi / 3, (i > 0) * (REACH * np.sqrt(3) + GAP)
+        at = np.round((step * np.cos(turn), 0.0, -step * np.sin(turn)), 5).tolist()
         owner = metal(stage, f"{distribution}Tile", kind, roughness)
         shape = "vGroove" if distribution in ("crosshatch", "random") else "round"
         cut = usd.profile(owner, "cut", shape=shape, rim=0.15)
-        target = engraved if distribution == "curves" else None
-        usd.layer(owner, distribution, cut, target, distribution=distribution, seed=i, **values)
-        turn = (i - 1) * np.pi / 3
-        at = (0.0, 0.0, 0.0) if i == 0 else (step * np.cos(turn), 0.0, -step * np.sin(turn))
-        usd.mesh(stage, f"{distribution}Tile", slab, owner, np.round(at, 5).tolist())
+        engraved = rosette(stage, at, detail) if distribution == "curves" else None
+        values = values | directions.get(distribution, {})
+        usd.layer(owner, distribution, cut, engraved, distribution=distribution, seed=i, **values)
+        usd.mesh(stage, f"{distribution}Tile", slab, owner, at)
 
 
-def rosette(stage: Usd.Stage, detail: float) -> Sdf.Path:
-    """The engraving of the curves tile, on its top."""
+def rosette(stage: Usd.Stage, at: list[float], detail: float) -> Sdf.Path:
+    """The engraving of the tile at ``at``."""
     lines = shapes.rosette(max(4, int(24 * detail)), max(24, int(360 * detail)))
-    turn = 2 * np.pi / 3 - np.pi / 3
-    step = REACH * np.sqrt(3) + GAP
     engraved = [2.6 * np.stack([line[:, 0], np.zeros(len(line)), -line[:, 1]], axis=-1) for line in lines]
-    at = np.round((step * np.cos(turn), 0.0, -step * np.sin(turn)), 5).tolist()
     return usd.curves(stage, "rosette", engraved, width=60.0, depth=16.0, space="object", move=at)
 
 

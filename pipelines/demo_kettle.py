@@ -58,7 +58,7 @@ def kettle(path: Path | str, detail: float = 1.0) -> Path:
     arch = shapes.smooth([(-x, y, z) for x, y, z in half] + [(0.0, 19.8, 0.0)] + half[::-1], 2 * n)
     usd.mesh(stage, "handle", shapes.tube(arch, 0.62, max(10, int(40 * detail))), bakelite)
     studio(stage, detail)
-    usd.camera(stage, (10.0, 27.0, 62.0), (1.8, 8.6, 0.0), lens=50.0)
+    usd.camera(stage, (11.0, 30.0, 70.0), (2.2, 9.2, 0.0))
     usd.settings(stage)
     return usd.save(stage, path, "A brushed kettle: circular scratches.")
 

@@ -50,7 +50,7 @@ def panel(path: Path | str, detail: float = 1.0) -> Path:
     usd.sphere_light(stage, "spark", (-0.3, -1.0, 0.34), 0.008, 3000.0, (1.0, 0.88, 0.75))
     usd.distant_light(stage, "sun", (0.3, 1.0, -0.9), 0.53, 0.9, up=UP)
     usd.dome_light(stage, "sky", 0.16, (0.7, 0.82, 1.0))
-    usd.camera(stage, (0.11, -0.82, 0.27), (0.0, 0.0, 0.125), UP)
+    usd.camera(stage, (0.13, -0.9, 0.3), (0.0, 0.0, 0.128), UP)
     usd.settings(stage)
     return usd.save(stage, path, "A scratched painted panel: marks in the clear coat, and bare metal.")
 

@@ -42,10 +42,11 @@ def angles(layer: Layer, uv: np.ndarray, scale: np.ndarray, rng: np.random.Gener
 
 
 def segments(scene: Scene, item: Shown, count: int, seed: int = 0) -> np.ndarray:
-    """Start and end of about ``count`` scratches of a layer, world metres, shape [n, 2, 3], spread evenly by area.
+    """Start and end of scratches of a layer, world metres, shape [n, 2, 3], spread evenly by area.
 
-    A line is as long as the layer's scratches, within 1 and 8 percent of the size of the surfaces it lies on; the lines
-    of regular patterns are all 3 percent. Layers of distribution curves have none: their lines are explicit.
+    There are ``count`` of them, or as many as the layer has on its surfaces where that is less. A line is as long as
+    the layer's scratches, within 1 and 8 percent of the size of the surfaces it lies on; the lines of regular patterns
+    are all 3 percent. Layers of distribution curves have none: their lines are explicit.
     """
     if item.layer.distribution == "curves":
         return np.zeros((0, 2, 3))
@@ -64,6 +65,7 @@ def segments(scene: Scene, item: Shown, count: int, seed: int = 0) -> np.ndarray
     area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     if not area.sum() > 0:
         return np.zeros((0, 2, 3))
+    count = min(count, number(item.layer, float(area.sum())))
     chosen = rng.choice(len(area), count, p=area / area.sum())
     weights = rng.dirichlet((1.0, 1.0, 1.0), count)[:, :, None]
     at, st = (corners[chosen] * weights).sum(1), (uv[chosen] * weights).sum(1)
@@ -76,6 +78,17 @@ def segments(scene: Scene, item: Shown, count: int, seed: int = 0) -> np.ndarray
     half = 0.5 * length * (np.cos(turn) * along + np.sin(turn) * across)
     lifted = at + 0.002 * size * normal
     return np.stack([lifted - half, lifted + half], axis=1)
+
+
+def number(layer: Layer, area: float) -> int:
+    """How many scratches a statistical layer has on ``area`` square metres; for others, more than can be drawn."""
+    if layer.distribution not in STATISTICAL or layer.space != "surface":
+        return 1 << 30
+    density = layer.density * 1e6
+    if density <= 0:
+        each = max(layer.width * layer.length, 1e-3) * 1e-12
+        density = -np.log1p(-min(layer.coverage, 0.999)) / each
+    return int(min(np.ceil(density * area), 1 << 30))
 
 
 def add(plotter: Any, scene: Scene, count: int = 1500) -> list[Any]:

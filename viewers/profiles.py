@@ -4,41 +4,16 @@ from typing import Any
 
 import numpy as np
 
-from scratchwarp.profiles import Profile, shape
+from scratchwarp.plan.profiles import cross_section
 from scratchwarp.scene import Layer
 
 from .colors import TEXT, Shown
 from .display import pyvista
 
-# Parameter of the schema -> keyword of ``profiles.shape``, for the shapes that have it.
-PARAMETERS = {
-    "vGroove": {"apex": "apex"},
-    "trapezoid": {"apex": "apex", "floorWidth": "floor"},
-    "gaussian": {"sigma": "sigma"},
-}
-
-
-def outline(layer: Layer) -> Profile:
-    """The profile of a layer with width 1 and the depth of the layer in widths.
-
-    Raises:
-        ValueError: the authored points cannot be a profile.
-    """
-    authored = layer.profile
-    aspect = layer.depth / layer.width if layer.width > 0 else 0.0
-    isolated = not authored.periodic
-    if authored.points is not None and authored.shape == "points":
-        return Profile(np.asarray(authored.points) * (1.0, aspect), isolated)
-    names = PARAMETERS.get(authored.shape, {})
-    known = {names[key]: value for key, value in authored.parameters if key in names}
-    return shape(
-        authored.shape, aspect, rim=authored.rim, rim_width=authored.rim_width, isolated=isolated, **known
-    )
-
 
 def micrometres(layer: Layer) -> np.ndarray:
     """The outline [n, 2] of a layer: x from the middle, z from the surface, both in micrometres (space uv: in uv)."""
-    line = outline(layer).polyline()
+    line = cross_section(layer.profile, layer).polyline()
     return (line - (0.5 * (line[0, 0] + line[-1, 0]), 0.0)) * layer.width
 
 
@@ -47,6 +22,7 @@ def add(plotter: Any, items: list[Shown]) -> list[Any]:
     pv = pyvista()
     charts = []
     for item, (x, y, width, height) in zip(items, cells(len(items)), strict=True):
+        y, height = 0.93 * y, 0.93 * height  # room for the title of all
         chart = pv.Chart2D(size=(0.98 * width, 0.97 * height), loc=(x + 0.01 * width, y + 0.015 * height))
         line = micrometres(item.layer)
         ground = 0.15 * np.ptp(line[:, 0])
@@ -67,6 +43,8 @@ def add(plotter: Any, items: list[Shown]) -> list[Any]:
             for part in (axis.GetTitleProperties(), axis.GetLabelProperties(), chart.GetTitleProperties()):
                 part.SetColor(*pv.Color(TEXT).float_rgb)
             axis.pen.color = TEXT
+            axis.SetNotation(2)  # fixed point
+            axis.SetPrecision(1)
         chart.GetTitleProperties().SetFontSize(12)
         plotter.add_chart(chart)
         charts.append(chart)

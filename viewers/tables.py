@@ -4,11 +4,11 @@ from typing import Any
 
 import numpy as np
 
+from scratchwarp.plan.profiles import cross_section
 from scratchwarp.profiles import simulate
 
 from .colors import TEXT, Shown
 from .display import pyvista
-from .profiles import outline
 
 
 def picture(item: Shown, resolution: int = 64, rays: int = 256) -> np.ndarray:
@@ -17,7 +17,7 @@ def picture(item: Shown, resolution: int = 64, rays: int = 256) -> np.ndarray:
     White is what the 99.5th percentile reaches.
     """
     pv = pyvista()
-    table = simulate(outline(item.layer), resolution=resolution, rays=rays)
+    table = simulate(cross_section(item.layer.profile, item.layer), resolution=resolution, rays=rays)
     density = np.sqrt(np.maximum(np.asarray(table.mirror, np.float64), 0.0))
     high = float(np.percentile(density, 99.5)) or 1.0
     shade = np.clip(density / high, 0.0, 1.0)[..., None]
@@ -43,6 +43,9 @@ def add(plotter: Any, items: list[Shown]) -> None:
     plotter.enable_parallel_projection()
     plotter.view_xy()
     plotter.camera.tight(padding=0.04, adjust_render_window=False)
+    plotter.camera.parallel_scale *= 1.15  # room for the titles
+    plotter.camera.focal_point = np.add(plotter.camera.focal_point, (0.0, 0.12, 0.0))
+    plotter.camera.position = np.add(plotter.camera.position, (0.0, 0.12, 0.0))
 
 
 def plane(pixels: np.ndarray, x: float, y: float, width: float) -> Any:

@@ -196,4 +196,4 @@ class Window:
         self._title(f"tables, phi_i to the right, phi_o upwards{more}" if items else "")
 
     def _title(self, text: str) -> None:
-        self.plotter.add_text(text, position="upper_left", font_size=9, color=TEXT, name="title")
+        self.plotter.add_text(text, position=(0.01, 0.945), viewport=True, font_size=8, color=TEXT, name="title")

@@ -53,3 +53,13 @@ def test_lines_of_a_layer_stay_on_its_material(make_scene, make_layer):
     assert np.abs(at[:, :2]).max() <= 1.0 and np.abs(at[:, 2]).max() < 0.01
     explicit = make_scene((make_layer(distribution="curves"),))
     assert len(directions.segments(explicit, shown(explicit)[0], 10)) == 0
+
+
+def test_no_more_lines_than_scratches(make_scene, make_layer):
+    """200 um by 0.5 m over 4 square metres at density 1e-5 a square millimetre: 40 scratches, whatever is asked for."""
+    layer = make_layer(distribution="random", density=1e-5, width=200.0, length=5e5)
+    scene = make_scene((layer,))
+    assert len(directions.segments(scene, shown(scene)[0], 1000)) == 40
+    # the same amount as coverage: 1 - exp(-density * width * length) with width * length = 100 mm^2
+    sparse = make_layer(distribution="random", coverage=1 - np.exp(-1e-3), width=200.0, length=5e5)
+    assert directions.number(sparse, 4.0) in (40, 41)  # rounded up
