@@ -5,9 +5,9 @@ import sys
 
 import pytest
 from pxr import Usd, UsdGeom, UsdRender, UsdShade, UsdValidation
-from scratchwarp.pipelines import author_demo
 
 from scratchwarp import usd_schemas
+from scratchwarp.pipelines import author_demo
 from scratchwarp.scene.layer import DISTRIBUTIONS
 
 DETAIL = 0.1

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from scratchwarp.pipelines import demo_shapes as shapes
 
 

@@ -1,9 +1,9 @@
 """Explicit scratches are drawn where they lie."""
 
 import numpy as np
-from scratchwarp.viewers import curves
 
 from scratchwarp.scene import Curves
+from scratchwarp.viewers import curves
 
 
 def record(points, counts, space):

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from scratchwarp.viewers import directions
 from scratchwarp.viewers.colors import shown
 

@@ -6,6 +6,7 @@ import weakref
 
 import numpy as np
 import pytest
+
 import scratchwarp.viewers as viewers
 from scratchwarp.viewers import camera, display, image, profiles, tables, window
 
