@@ -9,6 +9,7 @@ import warp as wp
 
 from scratchwarp.lights.cap_device import whole_span
 from scratchwarp.lights.light_device import (
+    MOST_PDF,
     Light,
     LightArrays,
     LightHit,
@@ -99,7 +100,7 @@ def sample_cylinder(arrays: LightArrays, light: Light, x: wp.vec3, u: wp.vec2) -
             s.distance = wp.sqrt(z * z + h * h)
             s.wi = (h / s.distance) * (cb * c.away + sb * c.across) + (z / s.distance) * light.ex
             s.radiance = shaped_radiance(light, s.wi)
-            s.pdf = 1.0 / (2.0 * c.beta * reach)
+            s.pdf = wp.min(1.0 / (2.0 * c.beta) / reach, MOST_PDF)
     return s
 
 
@@ -120,7 +121,7 @@ def hit_cylinder(arrays: LightArrays, light: Light, x: wp.vec3, w: wp.vec3) -> L
             if reach > 1.0e-30:
                 h.distance = distance
                 h.radiance = shaped_radiance(light, w)
-                h.pdf = 1.0 / (2.0 * c.beta * reach)
+                h.pdf = wp.min(1.0 / (2.0 * c.beta) / reach, MOST_PDF)
     return h
 
 

@@ -8,6 +8,7 @@ ey (orthogonal), ez, rx, ry, size, shaping.
 import warp as wp
 
 from scratchwarp.lights.light_device import (
+    MOST_PDF,
     Light,
     LightArrays,
     LightHit,
@@ -29,7 +30,7 @@ _CORNERS = wp.constant(1.2732395447351628)  # 4 / pi, the rectangle's area over 
 @wp.func
 def disk_pdf(light: Light, p: wp.vec3, height: float, distance: float) -> float:
     """Density [1/sr] of ``sample_disk`` for a point of the ellipse at ``distance``; ``p`` = centre - x."""
-    pdf = wp.min((distance / height) * (distance * distance / light.size), 1.0e30)
+    pdf = wp.min((distance / height) * (distance * distance / light.size), MOST_PDF)
     solid_angle = rect_solid_angle(p, light.ex, light.ey, height, _CORNERS * light.size)
     if solid_angle > _NEAR:
         pdf = 1.0 / solid_angle

@@ -15,6 +15,7 @@ import warp as wp
 from scratchwarp.reflectance.texture_device import TextureAtlas
 
 FAR = wp.constant(1.0e10)  # distance of lights at infinity [m]
+MOST_PDF = wp.constant(1.0e18)  # [1/sr]; squared it still fits float32, and what it cuts off is 1e-18 of a radiance
 
 
 @wp.struct

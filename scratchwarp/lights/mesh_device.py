@@ -9,6 +9,7 @@ import warp as wp
 from scratchwarp.lights.cap_device import span_cap, whole_span
 from scratchwarp.lights.cdf_device import interval_of
 from scratchwarp.lights.light_device import (
+    MOST_PDF,
     Light,
     LightArrays,
     LightHit,
@@ -45,7 +46,7 @@ def sample_mesh(arrays: LightArrays, light: Light, x: wp.vec3, u: wp.vec2) -> Li
         if height > 1.0e-12 * twice and s.distance > 0.0:
             s.wi = d / s.distance
             s.radiance = shaped_radiance(light, s.wi)
-            s.pdf = (s.distance * twice / height) * (s.distance * s.distance / light.size)
+            s.pdf = wp.min((s.distance * twice / height) * (s.distance * s.distance / light.size), MOST_PDF)
     return s
 
 
@@ -70,7 +71,7 @@ def mesh_light_hit(
     if descent > 0.0 and light.size > 0.0:
         h.distance = distance
         h.radiance = shaped_radiance(light, w)
-        h.pdf = (distance / wp.max(descent, 1.0e-12)) * (distance / light.size)
+        h.pdf = wp.min((distance / wp.max(descent, 1.0e-12)) * (distance / light.size), MOST_PDF)
     return h
 
 

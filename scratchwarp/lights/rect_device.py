@@ -9,6 +9,7 @@ sampled (infinite when sheared).
 import warp as wp
 
 from scratchwarp.lights.light_device import (
+    MOST_PDF,
     Light,
     LightArrays,
     LightHit,
@@ -49,7 +50,7 @@ def sampled_solid_angle(light: Light, p: wp.vec3, height: float) -> float:
 @wp.func
 def rect_pdf(light: Light, solid_angle: float, height: float, distance: float) -> float:
     """Density [1/sr] of ``sample_rect`` for a point at ``distance``, x being ``height`` over the plane."""
-    pdf = wp.min((distance / height) * (distance * distance / light.size), 1.0e30)
+    pdf = wp.min((distance / height) * (distance * distance / light.size), MOST_PDF)
     if solid_angle > 0.0:
         pdf = 1.0 / solid_angle
     return pdf

@@ -7,6 +7,7 @@ import warp as wp
 
 from scratchwarp.lights.cap_device import span_cap
 from scratchwarp.lights.light_device import (
+    MOST_PDF,
     Light,
     LightArrays,
     LightHit,
@@ -56,7 +57,7 @@ def sample_sphere(arrays: LightArrays, light: Light, x: wp.vec3, u: wp.vec2) -> 
             across2 = d * d * (local[0] * local[0] + local[1] * local[1])
             s.distance = near_distance(d, light.radius, d * local[2], light.radius * light.radius - across2)
             s.radiance = shaped_radiance(light, s.wi)
-            s.pdf = 1.0 / (_TWO_PI * versine)
+            s.pdf = wp.min(1.0 / (_TWO_PI * versine), MOST_PDF)
     return s
 
 
@@ -74,7 +75,7 @@ def hit_sphere(arrays: LightArrays, light: Light, x: wp.vec3, w: wp.vec3) -> Lig
         if chord2 >= 0.0 and versine > 1.0e-30:
             h.distance = near_distance(d, light.radius, along, chord2)
             h.radiance = shaped_radiance(light, w)
-            h.pdf = 1.0 / (_TWO_PI * versine)
+            h.pdf = wp.min(1.0 / (_TWO_PI * versine), MOST_PDF)
     return h
 
 

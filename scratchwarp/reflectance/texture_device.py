@@ -72,8 +72,7 @@ def texel_bilinear(atlas: TextureAtlas, index: int, uv: wp.vec2, wrap_s: int, wr
     fy = y - top
     i = int(left)
     j = int(top)
-    upper = (1.0 - fx) * texel(atlas, index, i, j, wrap_s, wrap_t) + fx * texel(atlas, index, i + 1, j, wrap_s, wrap_t)
-    lower = (1.0 - fx) * texel(atlas, index, i, j + 1, wrap_s, wrap_t) + fx * texel(
-        atlas, index, i + 1, j + 1, wrap_s, wrap_t
-    )
-    return (1.0 - fy) * upper + fy * lower
+    upper = wp.lerp(texel(atlas, index, i, j, wrap_s, wrap_t), texel(atlas, index, i + 1, j, wrap_s, wrap_t), fx)
+    j += 1
+    lower = wp.lerp(texel(atlas, index, i, j, wrap_s, wrap_t), texel(atlas, index, i + 1, j, wrap_s, wrap_t), fx)
+    return wp.vec4(wp.lerp(upper, lower, fy))

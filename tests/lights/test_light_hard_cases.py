@@ -61,6 +61,7 @@ def test_everything_is_finite(name):
     s = lights.sample(light, POINTS[:, None], u)
     for key, values in s.items():
         assert np.isfinite(values).all(), key
+    assert np.isfinite(s["pdf"] ** 2).all(), "float32 of the power heuristic"
     assert (s["distance"] >= 0).all() and (s["radiance"] >= 0).all()
     np.testing.assert_allclose(np.linalg.norm(s["wi"], axis=-1), 1.0, atol=1e-5)
     w = np.concatenate([sphere_directions(50), np.eye(3), -np.eye(3)])

@@ -2,11 +2,16 @@
 
 import numpy as np
 import pytest
+import warp as wp
 from scipy import stats
 
 from scratchwarp import lights
+from scratchwarp.lights.light_device import Light, LightArrays, LightHit
+from scratchwarp.lights.mesh_device import mesh_light_hit
 
 from .light_cases import ORIGIN, SEEN, packed_mesh, sphere_directions
+
+wp.set_module_options({"enable_backward": False})
 
 POINTS = np.array([[0.0, 0.0, 0.0], [0.25, -0.1, 0.02], [-0.4, 0.3, -0.5]])
 LOWEST_P = 1e-4  # fixed seeds
@@ -99,6 +104,33 @@ def test_mesh_light_density_is_uniform_over_its_area():
     behind = lights.sample(mesh, np.array([0.0, 0.0, 2.0]), np.random.default_rng(6).random((100, 2)))
     assert (behind["pdf"] == 0).all()
     assert (lights.hit(mesh, ORIGIN, s["wi"][:10])["distance"] < 0).all()
+
+
+@wp.kernel
+def _mesh_hits(
+    all_lights: wp.array[Light],
+    arrays: LightArrays,
+    w: wp.array[wp.vec3],
+    distance: wp.array[float],
+    normal: wp.vec3,
+    out: wp.array[LightHit],
+):
+    i = wp.tid()
+    out[i] = mesh_light_hit(arrays, all_lights[0], wp.vec3(0.0, 0.0, 0.0), w[i], distance[i], normal)
+
+
+@pytest.mark.parametrize(("side", "lit"), [(-1.0, True), (1.0, False)])
+def test_rays_that_meet_a_mesh_light_see_its_outside(side, lit):
+    mesh = packed_mesh(radiance=(3.0, 2.0, 1.0))
+    s = lights.sample(mesh, ORIGIN, np.random.default_rng(8).random((200, 2)))
+    out = wp.zeros(200, dtype=LightHit, device="cpu")
+    rays = [wp.array(s["wi"], dtype=wp.vec3, device="cpu"), wp.array(s["distance"], dtype=float, device="cpu")]
+    inputs = [mesh.lights["mesh"], mesh.arrays, *rays, wp.vec3(0.0, 0.0, side)]
+    wp.launch(_mesh_hits, 200, inputs=inputs, outputs=[out], device="cpu")
+    found = out.numpy()
+    assert ((found["distance"] >= 0) == lit).all()
+    np.testing.assert_allclose(found["pdf"], s["pdf"] * lit, rtol=1e-5)
+    np.testing.assert_allclose(found["radiance"], s["radiance"] * lit, rtol=1e-6)
 
 
 def test_textured_dome_is_sampled_by_brightness():
