@@ -12,7 +12,7 @@ from ..lights.light_device import Light
 from ..plan import EffectPlan
 from ..reflectance import profile_table
 from ..scene import MeshLight, Scene
-from ..scratches import KINDS
+from ..scratches import KINDS, curves
 from . import geometry, material
 from .camera_device import CameraData
 from .key import KernelKey
@@ -108,17 +108,24 @@ def assemble(scene: Scene, plan: EffectPlan, tables: Sequence[Any], device: str 
 
     emitters = {r.instance: int(flat[n]) for n, r in enumerate(scene.lights) if isinstance(r, MeshLight)}
     shape = geometry.pack(scene, key.directed, key.display_colors, emitters, device)
-    layers = [[material.pack_layer(p) for p in own] for own in plan.layers] if key.distributions else None
+    strokes, sets = curves.pack(scene.curves if "curves" in key.distributions else (), device)
+    layers = None
+    if key.distributions:
+        layers = [
+            [material.pack_layer(p, sets[p.sublayer.curves] if p.sublayer.curves >= 0 else None) for p in own]
+            for own in plan.layers
+        ]
     stuff = material.pack(scene, layers or [[] for _ in scene.materials], device)
     inputs = (
         camera_data(scene, plan),
         shape.arrays,
         stuff.arrays,
         stuff.layers,
+        strokes,
         profile_table.pack(tables, device),
         packed.arrays,
         light_array,
         wp.array(starts, dtype=int, device=device),
         wp.array(links, dtype=wp.uint8, device=device),
     )
-    return Assembled(key, inputs, (shape, stuff, packed), packed.warnings)
+    return Assembled(key, inputs, (shape, stuff, packed, sets), packed.warnings)

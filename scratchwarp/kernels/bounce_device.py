@@ -7,6 +7,7 @@ from ..lights.mesh_device import mesh_light_hit, span_mesh
 from ..optics.frames_device import Frame, frame_with_tangent, to_local, to_world
 from ..reflectance.base_device import Base, base_albedo, base_fresnel, base_sample
 from ..reflectance.profile_table_device import TableArrays, cone_direction, table_row, table_sample
+from ..scratches.curves_device import SegmentArrays
 from ..scratches.layer_device import LayerData
 from .geometry_device import Geometry, Surface
 from .key import KernelKey
@@ -49,6 +50,7 @@ def make_bounce(key: KernelKey, rotated, emission_at):
     def choose(
         g: Geometry,
         layers: wp.array(dtype=LayerData),
+        strokes: SegmentArrays,
         tables: TableArrays,
         m: MaterialData,
         s: Surface,
@@ -68,7 +70,7 @@ def make_bounce(key: KernelKey, rotated, emission_at):
         lobe.w_specular = 1.0
         if wp.static(key.scratches):
             if m.layers > 0:
-                laid = gather(g, layers, m, s, frame, step_x, step_y, u_lobe[1], u_more[1])
+                laid = gather(g, layers, strokes, m, s, frame, step_x, step_y, u_lobe[1], u_more[1])
                 lobe.w_specular = 1.0 - laid.covered
                 lobe.w_diffuse = 1.0 - laid.covered + laid.kept
                 if laid.chosen >= 0:

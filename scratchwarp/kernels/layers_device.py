@@ -4,6 +4,7 @@ import warp as wp
 
 from ..optics.frames_device import Frame
 from ..scratches import device_function, kind_number
+from ..scratches.curves_device import SegmentArrays, curves
 from ..scratches.layer_device import LayerData, LayerHit
 from .geometry_device import Geometry, Surface, uv_motion
 from .key import KernelKey
@@ -16,13 +17,14 @@ SMALLEST_COVERAGE = wp.constant(1.0e-6)
 
 def make_gather(key: KernelKey):
     """Device function that runs through a material's layers, compiled for the distributions of ``key``."""
-    functions = [device_function(name) for name in key.distributions]
-    numbers = [kind_number(name) for name in key.distributions]
+    patterns = [name for name in key.distributions if name != "curves"]
+    functions = [device_function(name) for name in patterns]
+    numbers = [kind_number(name) for name in patterns]
+    strokes_number = kind_number("curves")
 
     @wp.func
     def covered(layer: LayerData, q: wp.vec2d, scale: wp.vec2d, ax: wp.vec2, ay: wp.vec2, phase: float) -> LayerHit:
         hit = LayerHit()
-        hit.direction = wp.vec2(1.0, 0.0)
         for j in range(wp.static(len(functions))):
             if layer.kind == wp.static(numbers[j]):
                 hit = wp.static(functions[j])(layer, q, scale, ax, ay, phase)
@@ -32,6 +34,7 @@ def make_gather(key: KernelKey):
     def gather(
         g: Geometry,
         layers: wp.array(dtype=LayerData),
+        strokes: SegmentArrays,
         m: MaterialData,
         s: Surface,
         frame: Frame,
@@ -73,6 +76,12 @@ def make_gather(key: KernelKey):
                 wp.vec2(jy[0] * sx, jy[1] * sy),
                 wp.frac(phase + 0.618034 * float(k)),
             )
+            stroke = wp.vec3(0.0, 0.0, 0.0)
+            if wp.static("curves" in key.distributions):
+                if layer.kind == wp.static(strokes_number) and layer.bvh != wp.uint64(0):
+                    drawn = curves(strokes, layer, s.p, outward, s.uv, du, dv, step_x, step_y, jx, jy, phase)
+                    hit.alpha = drawn.alpha
+                    stroke = drawn.direction
             if hit.alpha > SMALLEST_COVERAGE:
                 total += hit.alpha
                 if layer.keeps_diffuse == 1:
@@ -84,7 +93,7 @@ def make_gather(key: KernelKey):
                     xi = xi / p
                     result.chosen = m.first_layer + k
                     # from pattern space to the surface: along the mapped direction, as an angle from dP/du
-                    mapped = du * (hit.direction[0] / sx) + dv * (hit.direction[1] / sy)
+                    mapped = du * (hit.direction[0] / sx) + dv * (hit.direction[1] / sy) + stroke
                     along = wp.dot(mapped, flat)
                     aside = wp.dot(mapped, across)
                     norm = wp.sqrt(along * along + aside * aside)

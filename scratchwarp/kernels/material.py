@@ -95,8 +95,9 @@ def pack_layer(plan: LayerPlan, curves: Any = None) -> LayerData:
     d.bend, d.bend_number = bend(layer)
     d.mean, d.table, d.keeps_diffuse, d.weight = sub.coverage, plan.table, int(plan.keeps_diffuse), plan.weight
     d.diffuse = wp.vec3(*plan.diffuse)
-    if curves is not None:
-        d.first, d.count, d.bvh = curves.first, curves.count, curves.bvh
+    if curves is not None and curves.bvh is not None:
+        d.first, d.bvh, d.reach = curves.first, curves.bvh.id, curves.reach
+        d.curve_uv, d.width_uv = int(curves.uv), int(curves.width_uv)
     return d
 
 

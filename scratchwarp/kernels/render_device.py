@@ -11,6 +11,7 @@ from ..optics.hash_device import pixel_seed
 from ..optics.sobol_device import sobol_2d
 from ..reflectance.base_device import base_albedo
 from ..reflectance.profile_table_device import TableArrays
+from ..scratches.curves_device import SegmentArrays
 from ..scratches.layer_device import LayerData
 from .base_at_device import make_base_at
 from .bounce_device import make_bounce
@@ -59,6 +60,7 @@ def make_kernel(key: KernelKey):
         g: Geometry,
         arrays: MaterialArrays,
         layers: wp.array(dtype=LayerData),
+        strokes: SegmentArrays,
         tables: TableArrays,
         light_arrays: LightArrays,
         lights: wp.array(dtype=Light),
@@ -199,7 +201,20 @@ def make_kernel(key: KernelKey):
                             step_x = footprint_step(step_x, direction, s.ng)
                             step_y = footprint_step(step_y, direction, s.ng)
                             lobe = choose(
-                                g, layers, tables, m, s, frame, base, wo, through, step_x, step_y, u_lobe, u_more
+                                g,
+                                layers,
+                                strokes,
+                                tables,
+                                m,
+                                s,
+                                frame,
+                                base,
+                                wo,
+                                through,
+                                step_x,
+                                step_y,
+                                u_lobe,
+                                u_more,
                             )
                             if depth == 0:
                                 first_scratch = lobe.scratch

@@ -10,7 +10,8 @@ Files (host):
     expand             a Layer as the author wrote it -> the sublayers that the kernel runs through
     curves             polylines -> segments and their hierarchy
 
-A distribution is one device function with the signature of ``worley_device.worley`` and one line in ``KINDS``.
+A distribution is one device function with the signature of ``worley_device.worley`` and one line in ``KINDS``; explicit
+curves alone look at the surface itself instead of the pattern plane.
 """
 
 import importlib

@@ -25,6 +25,7 @@ class Sublayer:
         layer: the author's layer; distribution: a key of ``scratches.KINDS``.
         angle: radians in pattern space; radius: threshold in cells; coverage: mean covered fraction.
         cell_length, cell_width: of a noise cell, in the layer's unit. seed: of its noise. offset: shift in cells.
+        curves: index into ``Scene.curves`` of an explicit set.
     """
 
     layer: Layer
@@ -36,6 +37,7 @@ class Sublayer:
     cell_width: float = 1.0
     seed: int = 0
     offset: tuple[float, float] = (0.0, 0.0)
+    curves: int = -1
 
 
 def _statistical(layer: Layer, angle: float, share: float, seed: int, offset: tuple[float, float]) -> Sublayer | None:
@@ -71,7 +73,7 @@ def _regular(layer: Layer, distribution: str, angle: float) -> Sublayer | None:
 def sublayers(layer: Layer) -> tuple[Sublayer, ...]:
     """The sets of scratches that ``layer`` stands for; none when nothing of it can be seen."""
     if layer.distribution == "curves":
-        return (Sublayer(layer, "curves", layer.angle, 1.0),) if layer.curves else ()
+        return tuple(Sublayer(layer, "curves", 0.0, 1.0, curves=index) for index in layer.curves)
     if layer.distribution in ("linear", "concentric", "spiral"):
         made = [_regular(layer, layer.distribution, layer.angle)]
     elif layer.distribution == "crosshatch":

@@ -35,8 +35,10 @@ class LayerData:
     diffuse: wp.vec3  # albedo of a diffuse scratch
     weight: float  # estimated reflectance, for choosing among lobes
     first: int  # curves: first segment
-    count: int  # curves: number of segments
     bvh: wp.uint64  # curves: hierarchy over the segments
+    reach: float  # curves: how far from its box a segment's strip may lie
+    curve_uv: int  # curves: 1 when segments lie in the uv square
+    width_uv: int  # curves: 1 when half widths are fractions of it
 
 
 @wp.struct

@@ -1,0 +1,67 @@
+"""Polylines -> segments on the device and a hierarchy over each set."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import warp as wp
+
+from ..scene import Curves
+from .curves_device import OFF_PLANE, SegmentArrays
+
+
+@dataclass(frozen=True, eq=False)
+class CurveSet:
+    """One set of explicit scratches in the device arrays.
+
+    Attributes:
+        first, count: its segments. bvh: Warp hierarchy over them (None when there are none).
+        reach: how far from a segment's box its strip may lie, in the unit of widths.
+        uv: the ends are (u, v, 0); width_uv: half widths are fractions of the uv square.
+    """
+
+    first: int
+    count: int
+    bvh: wp.Bvh | None
+    reach: float
+    uv: bool
+    width_uv: bool
+
+
+def segments(curves: Curves) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(starts [n, 3], ends [n, 3], half widths [n]) of a set, widths of the two ends averaged, in metres (or uv)."""
+    last = np.zeros(len(curves.points), bool)
+    last[np.cumsum(curves.counts) - 1] = True
+    start = np.flatnonzero(~last)
+    a, b = curves.points[start], curves.points[start + 1]
+    scale = 1.0 if curves.width_unit == "uv" else 1e-6
+    half = 0.25 * scale * (curves.widths[start] + curves.widths[start + 1])
+    keep = (np.abs(b - a).max(1) > 0) & (half > 0)
+    return a[keep], b[keep], half[keep]
+
+
+def pack(sets: Sequence[Curves], device: str = "cpu") -> tuple[SegmentArrays, tuple[CurveSet, ...]]:
+    """Device arrays of all sets, and what a layer needs to know of each."""
+    made, parts, first = [], [], 0
+    for curves in sets:
+        a, b, half = segments(curves)
+        parts.append((a, b, half))
+        bvh, reach = None, 0.0
+        if len(a):
+            low, high = (
+                wp.array(f(a, b).astype(np.float32), dtype=wp.vec3, device=device) for f in (np.minimum, np.maximum)
+            )
+            bvh = wp.Bvh(low, high)
+            reach = float(half.max())
+            if curves.space == "object":
+                reach += float(OFF_PLANE * np.linalg.norm(b - a, axis=1).max())
+        made.append(CurveSet(first, len(a), bvh, reach, curves.space == "uv", curves.width_unit == "uv"))
+        first += len(a)
+    arrays = SegmentArrays()
+    columns = [
+        np.concatenate(c) if parts else np.zeros((1, 3)) for c in (zip(*parts, strict=True) if parts else [(), (), ()])
+    ]
+    arrays.a = wp.array(columns[0].reshape(-1, 3).astype(np.float32), dtype=wp.vec3, device=device)
+    arrays.b = wp.array(columns[1].reshape(-1, 3).astype(np.float32), dtype=wp.vec3, device=device)
+    arrays.half = wp.array(columns[2].ravel().astype(np.float32), dtype=float, device=device)
+    return arrays, tuple(made)
