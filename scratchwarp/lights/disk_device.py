@@ -19,7 +19,7 @@ from scratchwarp.lights.light_device import (
     shaped_radiance,
 )
 from scratchwarp.lights.polygon_device import span_outline
-from scratchwarp.lights.spherical_rect_device import rect_solid_angle, spherical_rect_offset
+from scratchwarp.lights.spherical_rect_device import rect_solid_angle, rect_view, spherical_rect_offset
 from scratchwarp.optics.sampling_device import sample_concentric_disk
 
 _SIDES = wp.constant(8)  # of the outline around the ellipse: 5 % more area than the ellipse
@@ -28,10 +28,10 @@ _CORNERS = wp.constant(1.2732395447351628)  # 4 / pi, the rectangle's area over 
 
 
 @wp.func
-def disk_pdf(light: Light, p: wp.vec3, height: float, distance: float) -> float:
-    """Density [1/sr] of ``sample_disk`` for a point of the ellipse at ``distance``; ``p`` = centre - x."""
+def disk_pdf(light: Light, solid_angle: float, height: float, distance: float) -> float:
+    """Density [1/sr] of ``sample_disk`` for a point of the ellipse at ``distance``; ``solid_angle`` of the rectangle
+    around it."""
     pdf = wp.min((distance / height) * (distance * distance / light.size), MOST_PDF)
-    solid_angle = rect_solid_angle(p, light.ex, light.ey, height, _CORNERS * light.size)
     if solid_angle > _NEAR:
         pdf = 1.0 / solid_angle
     return pdf
@@ -46,9 +46,10 @@ def sample_disk(arrays: LightArrays, light: Light, x: wp.vec3, u: wp.vec2) -> Li
     if height > 1.0e-12 and light.size > 0.0:
         q = sample_concentric_disk(u)
         offset = q[0] * light.ex + q[1] * light.ey
-        solid_angle = rect_solid_angle(p, light.ex, light.ey, height, _CORNERS * light.size)
+        view = rect_view(p, light.ex, light.ey, height)
+        solid_angle = rect_solid_angle(view, p, light.ex, light.ey, height, _CORNERS * light.size)
         if solid_angle > _NEAR:
-            offset = spherical_rect_offset(p, light.ex, light.ey, height, u)
+            offset = spherical_rect_offset(view, p, height, u)
         a = wp.dot(offset, light.rx)
         b = wp.dot(offset, light.ry)
         if a * a + b * b <= 1.000001:
@@ -56,7 +57,7 @@ def sample_disk(arrays: LightArrays, light: Light, x: wp.vec3, u: wp.vec2) -> Li
             s.distance = wp.length(d)
             s.wi = d / s.distance
             s.radiance = shaped_radiance(light, s.wi)
-            s.pdf = disk_pdf(light, p, height, s.distance)
+            s.pdf = disk_pdf(light, solid_angle, height, s.distance)
     return s
 
 
@@ -75,7 +76,9 @@ def hit_disk(arrays: LightArrays, light: Light, x: wp.vec3, w: wp.vec3) -> Light
         if a * a + b * b <= 1.0:
             h.distance = distance
             h.radiance = shaped_radiance(light, w)
-            h.pdf = disk_pdf(light, p, height, distance)
+            view = rect_view(p, light.ex, light.ey, height)
+            solid_angle = rect_solid_angle(view, p, light.ex, light.ey, height, _CORNERS * light.size)
+            h.pdf = disk_pdf(light, solid_angle, height, distance)
     return h
 
 

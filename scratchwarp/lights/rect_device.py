@@ -20,7 +20,7 @@ from scratchwarp.lights.light_device import (
     shaped_radiance,
 )
 from scratchwarp.lights.polygon_device import span_outline
-from scratchwarp.lights.spherical_rect_device import rect_solid_angle, spherical_rect_offset
+from scratchwarp.lights.spherical_rect_device import RectView, rect_solid_angle, rect_view, spherical_rect_offset
 from scratchwarp.reflectance.texture_device import texel_bilinear
 
 
@@ -37,11 +37,11 @@ def rect_radiance(arrays: LightArrays, light: Light, offset: wp.vec3, w: wp.vec3
 
 
 @wp.func
-def sampled_solid_angle(light: Light, p: wp.vec3, height: float) -> float:
+def sampled_solid_angle(light: Light, view: RectView, p: wp.vec3, height: float) -> float:
     """The solid angle where directions are sampled uniformly over it, else 0."""
     result = 0.0
     if light.half_angle < 100.0:
-        result = rect_solid_angle(p, light.ex, light.ey, height, light.size)
+        result = rect_solid_angle(view, p, light.ex, light.ey, height, light.size)
         if result < light.half_angle:
             result = 0.0
     return result
@@ -63,10 +63,11 @@ def sample_rect(arrays: LightArrays, light: Light, x: wp.vec3, u: wp.vec2) -> Li
     p = light.center - x
     height = -wp.dot(p, light.ez)
     if height > 1.0e-12 and light.size > 0.0:
-        solid_angle = sampled_solid_angle(light, p, height)
+        view = rect_view(p, light.ex, light.ey, height)
+        solid_angle = sampled_solid_angle(light, view, p, height)
         offset = (2.0 * u[0] - 1.0) * light.ex + (2.0 * u[1] - 1.0) * light.ey
         if solid_angle > 0.0:
-            offset = spherical_rect_offset(p, light.ex, light.ey, height, u)
+            offset = spherical_rect_offset(view, p, height, u)
         d = p + offset
         s.distance = wp.length(d)
         s.wi = d / s.distance
@@ -88,7 +89,8 @@ def hit_rect(arrays: LightArrays, light: Light, x: wp.vec3, w: wp.vec3) -> Light
         if wp.abs(wp.dot(offset, light.rx)) <= 1.0 and wp.abs(wp.dot(offset, light.ry)) <= 1.0:
             h.distance = distance
             h.radiance = rect_radiance(arrays, light, offset, w)
-            h.pdf = rect_pdf(light, sampled_solid_angle(light, p, height), height, distance)
+            view = rect_view(p, light.ex, light.ey, height)
+            h.pdf = rect_pdf(light, sampled_solid_angle(light, view, p, height), height, distance)
     return h
 
 

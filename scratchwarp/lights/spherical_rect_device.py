@@ -82,9 +82,8 @@ def triangle_solid_angle(a: wp.vec3, b: wp.vec3, c: wp.vec3, volume: float) -> f
 
 
 @wp.func
-def rect_solid_angle(p: wp.vec3, ex: wp.vec3, ey: wp.vec3, height: float, area: float) -> float:
+def rect_solid_angle(r: RectView, p: wp.vec3, ex: wp.vec3, ey: wp.vec3, height: float, area: float) -> float:
     """Solid angle [sr] of the rectangle of ``area``; relative error some 1e-5 however small or large."""
-    r = rect_view(p, ex, ey, height)
     result = r.g01 + r.g2 + r.g3 - _TWO_PI
     if result < _SMALL:
         a = p - ex - ey
@@ -96,12 +95,11 @@ def rect_solid_angle(p: wp.vec3, ex: wp.vec3, ey: wp.vec3, height: float, area: 
 
 
 @wp.func
-def spherical_rect_offset(p: wp.vec3, ex: wp.vec3, ey: wp.vec3, height: float, u: wp.vec2) -> wp.vec3:
+def spherical_rect_offset(r: RectView, p: wp.vec3, height: float, u: wp.vec2) -> wp.vec3:
     """Offset from p of a point whose direction is uniform over the solid angle of the rectangle.
 
     Points err by some 5e-7 / solid angle of an edge's length, so below some 0.02 sr sample the area instead.
     """
-    r = rect_view(p, ex, ey, height)
     zz = height * height
     k = _TWO_PI - r.g2 - r.g3
     au = u[0] * (r.g01 - k) + k
