@@ -1,6 +1,7 @@
 """What the command line understands: usdrecord's names and short forms first, the renderer's own after them."""
 
 import argparse
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -90,6 +91,38 @@ def reading(args: argparse.Namespace) -> dict[str, Any]:
         "mask": listed(args.mask) or None,
         "render_settings": args.renderSettingsPrimPath,
     }
+
+
+def cross_sections(args: argparse.Namespace) -> list[tuple[str, Any, Any]]:
+    """(name, profile, reflector) of what ``simulate`` is given: the tables that a stage's plan asks for, a file of
+    points (x, z), or the name of a shape. The reflector is None for a mirror.
+
+    ValueError or OSError naming what is at fault; UsageError when it is none of the three.
+    """
+    import numpy as np
+
+    from . import make_plan, optics, profiles, read
+
+    if Path(args.source).suffix in (".usd", ".usda", ".usdc", ".usdz"):
+        tables = make_plan(read(args.source)).tables
+        if not tables:
+            raise ValueError(f"{args.source}: no scratch layer of it needs a table")
+        found = [(", ".join(table.users), table.profile, table.fresnel) for table in tables]
+        return [row for row in found if args.layer is None or args.layer in row[0]] or found
+    fresnel = optics.Conductor(*optics.metals.rgb(args.metal)) if args.metal else None
+    if args.ior is not None:
+        fresnel = optics.Dielectric(args.ior)
+    if Path(args.source).is_file():
+        try:
+            points = np.loadtxt(args.source, delimiter="," if args.source.endswith(".csv") else None, ndmin=2)
+            return [(args.source, profiles.Profile(points, isolated=args.isolated), fresnel)]
+        except ValueError as error:
+            raise ValueError(f"{args.source}: {error}") from None
+    if args.source not in profiles.shape_names():
+        known = ", ".join(profiles.shape_names())
+        raise UsageError(f"{args.source!r} is neither a USD stage nor a file of points nor one of {known}")
+    profile = profiles.shape(args.source, depth=args.depth, isolated=args.isolated)
+    return [(args.source, profile, fresnel)]
 
 
 def listed(text: str) -> tuple[str, ...]:

@@ -10,13 +10,10 @@ import sys
 import traceback
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from . import arguments
 from .arguments import UsageError
-
-if TYPE_CHECKING:
-    from .scene import Scene
 
 Command = argparse.Namespace
 
@@ -25,6 +22,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run one sub-command and return its exit status; argparse itself leaves with 2 on wrong usage."""
     args = _parser().parse_args(argv)
     try:
+        if args.run is not validate:
+            _start_warp()
         status = args.run(args)
         sys.stdout.flush()
         return status
@@ -52,7 +51,7 @@ def render(args: Command) -> int:
     import scratchwarp as sw
 
     from . import image
-    from .render.progress import bar
+    from .render import AOVS, bar
 
     settings, view = arguments.settings(args), _view(args)
     jobs = _jobs(args)
@@ -61,15 +60,22 @@ def render(args: Command) -> int:
         if checkpoint and not Path(checkpoint).parent.is_dir():
             raise FileNotFoundError(f"{checkpoint}: cannot be written, there is no folder {Path(checkpoint).parent}")
     told: set[str] = set()
+    layers = arguments.listed(",".join(args.aov))
+    unknown = sorted(set(layers) - set(AOVS))
+    if unknown:
+        raise UsageError(f"--aov {unknown[0]!r} is not one of {', '.join(AOVS)}")
     for frame, out, checkpoint in jobs:
         scene = sw.read(args.stage, frame=frame, **arguments.reading(args))
-        _warn(scene, told, args.quiet)
+        _warn(scene.warnings, told, args.quiet)
         plan = sw.make_plan(scene, settings)
+        _warn(plan.warnings, told, args.quiet)
         with bar(args.quiet, Path(out).name) as progress:
             film = sw.render(scene, plan, progress=progress, checkpoint=checkpoint, resume=args.resume)
-        sw.write(film, out, aovs=arguments.listed(",".join(args.aov)) or None, view=view)
+        _warn(film.warnings, told, args.quiet)
+        sw.write(film, out, aovs=layers or None, view=view)
         if args.json:
-            row = {"image": out, "frame": frame, "warnings": scene.warnings, "stats": dict(film.stats)}
+            warnings = tuple(dict.fromkeys(scene.warnings + plan.warnings + film.warnings))
+            row = {"image": out, "frame": frame, "warnings": warnings, "stats": dict(film.stats)}
             print(json.dumps(row, default=_plain), flush=True)
         elif not args.quiet:
             print(out, flush=True)
@@ -81,13 +87,54 @@ def explain(args: Command) -> int:
     import scratchwarp as sw
 
     scene = sw.read(args.stage, **arguments.reading(args))
-    _warn(scene, set(), args.quiet)
+    _warn(scene.warnings, set(), args.quiet)
     plan = sw.make_plan(scene, arguments.settings(args))
     if args.json:
         effects = {n: {"enabled": e.enabled, "reason": e.reason, "prims": e.prims} for n, e in plan.effects.items()}
-        print(json.dumps({"stage": args.stage, "warnings": scene.warnings, "effects": effects}, default=_plain))
+        warnings = scene.warnings + plan.warnings
+        print(json.dumps({"stage": args.stage, "warnings": warnings, "effects": effects}, default=_plain))
     else:
         print(plan.explain())
+    return 0
+
+
+def simulate(args: Command) -> int:
+    """Write the table of a profile, or those of a stage's layers, to EXR, NPZ or (as a picture) PNG."""
+    import numpy as np
+
+    from . import image, profiles
+    from .frames import is_numbered, numbered
+
+    found = arguments.cross_sections(args)
+    if len(found) > 1 and not is_numbered(args.out):
+        names = "; ".join(name for name, _, _ in found)
+        raise UsageError(
+            f"{args.source} asks for {len(found)} tables ({names}): choose one by --layer, or write ### in OUT"
+        )
+    for number, (name, profile, fresnel) in enumerate(found, 1):
+        out = numbered(args.out, float(number))
+        image.check_writable(out)
+        table = profiles.simulate(
+            profile,
+            resolution=args.resolution,
+            rays=args.rays,
+            fresnel=fresnel,
+            incidence=args.incidence,
+            sampler=args.sampler,
+            max_bounces=args.maxBounces,
+            seed=args.seed,
+        )
+        layers = {"mirror": table.mirror, **{f"bounce{i + 1}": part for i, part in enumerate(table.by_bounce)}}
+        if table.normal is not None and table.gamma is not None:
+            layers |= {"rho": table.normal, "gamma": table.gamma}
+        if out.endswith(".png"):
+            shade = np.sqrt(table.mirror / max(float(np.percentile(table.mirror, 99.5)), 1e-9))[::-1, :, None]
+            layers = {"color": np.repeat(shade, 3, axis=2)}
+        elif out.endswith(".npz"):
+            layers |= {"angles": table.angles, "weights": table.weights, "lost": table.lost}
+        image.write_layers(layers, out, {"Software": "scratchwarp", "scratchwarp:profile": name, **table.metadata})
+        if not args.quiet:
+            print(f"{out}: {name}, {table.rays} rays, largest loss {float(np.max(table.lost)):.2g}", flush=True)
     return 0
 
 
@@ -130,7 +177,7 @@ def demo(args: Command) -> int:
     import scratchwarp as sw
 
     from .pipelines.author_demo import author
-    from .render.progress import bar
+    from .render import bar
 
     settings = sw.Settings(width=args.imageWidth, spp=args.spp, threads=args.threads)
     Path(args.out).mkdir(parents=True, exist_ok=True)
@@ -138,9 +185,9 @@ def demo(args: Command) -> int:
     for stage in author(args.out):
         stage = Path(stage)
         scene = sw.read(stage)
-        _warn(scene, told, args.quiet)
         with bar(args.quiet, stage.stem) as progress:
             film = sw.render(scene, sw.make_plan(scene, settings), progress=progress)
+        _warn(scene.warnings + film.warnings, told, args.quiet)
         for out in (stage.with_suffix(".exr"), stage.with_suffix(".png")):
             sw.write(film, out)
             if not args.quiet:
@@ -176,12 +223,28 @@ def _view(args: Command) -> Any:
         raise UsageError(str(error)) from error
 
 
-def _warn(scene: "Scene", told: set[str], quiet: bool) -> None:
-    """Print each warning of the scene that was not printed before."""
-    for warning in scene.warnings:
+def _warn(warnings: Sequence[str], told: set[str], quiet: bool) -> None:
+    """Print each warning that was not printed before."""
+    for warning in warnings:
         if warning not in told and not quiet:
             _say(f"warning: {warning}")
         told.add(warning)
+
+
+def _start_warp() -> None:
+    """Start Warp without its greeting, which would stand in the way of results on stdout, and without the remark that
+    there is no CUDA driver, which comes from native code straight to stderr."""
+    import warp
+
+    warp.config.log_level = warp.LOG_ERROR
+    kept, nowhere = os.dup(2), os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 2)
+    try:
+        warp.init()
+    finally:
+        os.dup2(kept, 2)
+        os.close(kept)
+        os.close(nowhere)
 
 
 def _say(text: str) -> None:
@@ -203,6 +266,9 @@ _EXAMPLES = {
   scratchwarp render ball.usda ball.exr --aov depth,normal --effect interreflection=off --json
   scratchwarp render ball.usda ball.exr --spp 4096 --checkpoint ball.part --resume""",
     "explain": "scratchwarp explain ball.usda\n  scratchwarp explain ball.usda --effect shadows=off --json",
+    "simulate": """scratchwarp simulate quartic quartic.exr --depth 0.4
+  scratchwarp simulate groove.csv groove.png --metal gold --resolution 128
+  scratchwarp simulate ball.usda tables.##.npz""",
     "validate": "scratchwarp validate ball.usda\n  scratchwarp validate ball.usda --strict --json",
     "view": "scratchwarp view ball.usda\n  scratchwarp view ball.usda --screenshot look.png --frame 12",
     "demo": "scratchwarp demo out\n  scratchwarp demo out -w 320 --spp 4",
@@ -253,6 +319,23 @@ def _parser() -> argparse.ArgumentParser:
     made = command(explain, "say which effects a stage calls for, and why", json_too=True)
     arguments.add_stage(made)
     arguments.add_settings(made)
+
+    made = command(simulate, "write the table of a profile, or those of a stage's layers")
+    made.add_argument("source", metavar="PROFILE|STAGE", help="name of a shape, file of points (x, z), or USD file")
+    made.add_argument("out", metavar="OUT", help="table.exr, .npz, or .png for a picture: phi_o upwards, square root")
+    made.add_argument("--layer", metavar="NAME", help="the layer of the stage that is meant")
+    made.add_argument("--depth", type=float, default=0.5, help="of a named shape, in widths [0.5]")
+    made.add_argument(
+        "--isolated", action="store_true", help="alone in flat ground; a stage's profiles say it themselves"
+    )
+    made.add_argument("--metal", help="reflects as aluminium, gold, copper, silver, iron or brass [a mirror]")
+    made.add_argument("--ior", type=float, help="reflects as a dielectric of this index")
+    made.add_argument("--resolution", type=int, default=256, help="bins each way [256]")
+    made.add_argument("--rays", type=int, default=512, help="rays for each bin of phi_i [512]")
+    made.add_argument("--sampler", default="beam", help="beam, stratified or random [beam]")
+    made.add_argument("--incidence", default="cell", help="cell or centre [cell]")
+    made.add_argument("--maxBounces", type=int, default=2000, help="[2000]")
+    made.add_argument("--seed", type=int, default=0, help="[0]")
 
     made = command(validate, "check a stage against the scratch schemas", json_too=True)
     made.add_argument("stage", metavar="FILE", help="USD file")

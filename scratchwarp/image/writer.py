@@ -1,6 +1,7 @@
 """write(film, path): the suffix chooses the format."""
 
 import os
+import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,9 +21,10 @@ def write(film: "Film", path: str | Path, *, aovs: Sequence[str] | None = None, 
     """Write a film as multi-layer EXR, as PNG through ``view``, or as NPZ; whole or not at all.
 
     ``aovs``: names of the layers to write besides color and alpha (EXR, NPZ); None: all of them.
+    Adds the seconds it took to ``film.stats["write"]``.
     ValueError on an unknown suffix or layer and on a NaN (naming its pixel), OSError when the file cannot be written.
     """
-    target = _target(path)
+    target, start = _target(path), time.perf_counter()
     layers = dict(film.aovs)
     if aovs is not None:
         unknown = sorted(set(aovs) - set(layers))
@@ -35,6 +37,7 @@ def write(film: "Film", path: str | Path, *, aovs: Sequence[str] | None = None, 
         npz.write(layers, target, film.metadata)
     else:
         exr.write(layers, target, film.metadata, film.crop, film.full_size)
+    film.stats["write"] = film.stats.get("write", 0.0) + time.perf_counter() - start
 
 
 def write_layers(layers: Mapping[str, np.ndarray], path: str | Path, metadata: Mapping[str, Any] | None = None) -> None:

@@ -13,9 +13,10 @@ def silent(done: int, total: int, stage: str) -> None:
 
 @contextmanager
 def bar(quiet: bool = False, title: str = "") -> Iterator[Progress]:
-    """Yield ``progress(done_samples, total_samples, stage)``, which draws a bar on stderr.
+    """Yield ``progress(done, total, stage)``, which draws a bar on stderr.
 
-    It may be called from any thread. A new ``stage`` starts a new line, so that the speed is that of the stage alone.
+    It may be called from any thread. A new ``stage`` starts a new line, so that the speed is that of the stage alone;
+    the stage "trace" counts samples, the others steps.
     Silent when ``quiet``, or when stderr is no terminal.
     """
     if quiet or not sys.stderr.isatty():
@@ -28,7 +29,8 @@ def bar(quiet: bool = False, title: str = "") -> Iterator[Progress]:
 
     class Speed(ProgressColumn):
         def render(self, task: Task) -> Text:
-            return Text(speed(task.finished_speed or task.speed), style="progress.data.speed")
+            rate = (task.finished_speed or task.speed) if task.fields["in_samples"] else None
+            return Text(speed(rate), style="progress.data.speed")
 
     columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), Speed(), TimeRemainingColumn())
     tasks = {}
@@ -36,7 +38,8 @@ def bar(quiet: bool = False, title: str = "") -> Iterator[Progress]:
 
         def progress(done: int, total: int, stage: str) -> None:
             if stage not in tasks:
-                tasks[stage] = bars.add_task(" ".join(word for word in (title, stage) if word), total=total)
+                name = " ".join(word for word in (title, stage) if word)
+                tasks[stage] = bars.add_task(name, total=total, in_samples=stage == "trace")
             bars.update(tasks[stage], completed=done, total=total)
 
         yield progress

@@ -4,7 +4,8 @@ import subprocess
 import sys
 
 import pytest
-from house import ROOMS, modules
+
+from .house import ROOMS, modules
 
 # Foreign library -> rooms that may import it, with the reason for each room that is not the library's own door.
 DOORS = {

@@ -2,7 +2,7 @@
 
 import tomllib
 
-from house import repository
+from .house import repository
 
 SETTINGS = tomllib.loads((repository() / "pyproject.toml").read_text(encoding="utf-8"))
 

@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-from house import ROOMS, modules, repository
+from .house import ROOMS, modules, repository
 
 README = repository() / "README.md"
 INSTALL = "python -m pip install . && scratchwarp demo out"

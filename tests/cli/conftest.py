@@ -23,7 +23,9 @@ class Renderer:
     def make_plan(self, scene, settings):
         self.settings.append(settings)
         effect = SimpleNamespace(enabled=False, reason="nothing can occlude", prims=("/World/Ball",))
-        return SimpleNamespace(effects={"shadows": effect}, explain=lambda: "shadows off nothing can occlude")
+        return SimpleNamespace(
+            warnings=(), effects={"shadows": effect}, explain=lambda: "shadows off nothing can occlude"
+        )
 
     def render(self, scene, plan, progress=None, **how):
         self.renders.append(how)
@@ -31,7 +33,8 @@ class Renderer:
         self.during_render()
         aovs = {"color": np.ones((2, 3, 3), np.float32), "alpha": np.ones((2, 3), np.float32)}
         aovs["depth"] = np.ones((2, 3), np.float32)
-        return SimpleNamespace(aovs=aovs, metadata={}, crop=None, full_size=(3, 2), stats={"rays": np.int64(6)})
+        stats = {"rays": np.int64(6)}
+        return SimpleNamespace(aovs=aovs, metadata={}, crop=None, full_size=(3, 2), stats=stats, warnings=("dim",))
 
 
 @pytest.fixture
