@@ -12,7 +12,7 @@ from .light import common, radiance
 from .light_near import EmittingShape
 from .lights import is_mesh_light, linked, read_light
 from .material import BLACK, Materials
-from .place import to_metres
+from .place import check_finite, to_metres
 from .reading import Reading
 from .texture import Textures
 from .traverse import Placed
@@ -48,7 +48,11 @@ def read_lights(
         if is_mesh_light(prim):
             found = _mesh_light(reading, placed, number.get(placed.path), out, materials)
         else:
+            check_finite(reading, placed)
             metric = to_metres(reading, placed.world, origin)
+            if not metric[:3, :3].any(axis=0).all():
+                reading.warn(placed.path, "its transform has a scale of 0; it gives no light")
+                continue
             found = read_light(reading, prim, metric, textures)
             if isinstance(found, EmittingShape):
                 found = _emitter(found, metric, out, materials)

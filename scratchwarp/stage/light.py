@@ -7,7 +7,7 @@ scene units, scale included) when ``normalize`` is on, and 1 when it is not (Usd
 from typing import Any
 
 import numpy as np
-from pxr import Usd, UsdLux
+from pxr import Usd, UsdLux, UsdShade
 
 from scratchwarp.scene import Shaping
 
@@ -61,6 +61,8 @@ def common(reading: Reading, prim: Usd.Prim, widest: float | None = None) -> dic
     apply to it.
     """
     path = prim.GetPath()
+    if any(given.HasConnectedSource() for given in UsdShade.ConnectableAPI(prim).GetInputs()):
+        reading.warn(path, "shaders connected to a light's inputs are not honoured")
     distance = reading.number(prim, "inputs:shadow:distance", -1.0)
     if reading.number(prim, "inputs:shadow:falloff", -1.0) > 0 and distance >= 0:
         reading.warn(path, "inputs:shadow:falloff is not honoured; the shadow ends sharply")

@@ -44,6 +44,9 @@ def sphere(reading: Reading, prim: Usd.Prim, metric: np.ndarray, textures: Textu
         intensity = radiance(reading, prim, 1.0) / 4 * unit**2
         return SphereLight(**fields, radiance=intensity, center=metric[:3, 3], radius=0.0, axis=axis, point=True)
     area = ellipsoid_area(linear)
+    if area == 0:
+        reading.warn(prim.GetPath(), "the light has no area; it gives no light")
+        return None
     emitted = radiance(reading, prim, area / unit**2)
     scales = np.linalg.svd(linear, compute_uv=False)
     if bool(reading.value(prim, "treatAsPoint", False)):

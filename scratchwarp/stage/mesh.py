@@ -54,6 +54,7 @@ def read_mesh(reading: Reading, prim: Usd.Prim) -> Mesh | None:
     corners = Corners(positions, indices[positions], cut.faces, len(indices), len(points), len(counts))
 
     api = UsdGeom.PrimvarsAPI(prim)
+    _complain(reading, prim, api)
     return Mesh(
         path=path,
         points=points,
@@ -77,6 +78,15 @@ def material_subsets(prim: Usd.Prim) -> list[UsdGeom.Subset]:
         for s in UsdShade.MaterialBindingAPI(prim).GetMaterialBindSubsets()
         if s.GetElementTypeAttr().Get() == UsdGeom.Tokens.face
     ]
+
+
+def _complain(reading: Reading, prim: Usd.Prim, api: UsdGeom.PrimvarsAPI) -> None:
+    if "SkelBindingAPI" in prim.GetAppliedSchemas():
+        reading.warn(prim.GetPath(), "skinning and blend shapes are not honoured; its rest shape is rendered")
+    opacity = api.FindPrimvarWithInheritance("displayOpacity")
+    got = opacity.Get(reading.time) if opacity and opacity.HasValue() else None
+    if got is not None and len(got) and min(got) < 1:
+        reading.warn(prim.GetPath(), "displayOpacity is not honoured; it is rendered opaque")
 
 
 def _array(attribute: Usd.Attribute, reading: Reading):

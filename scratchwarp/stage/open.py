@@ -1,7 +1,8 @@
 """From a file to an open stage, or a message that says what is wrong with the file."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from pxr import Sdf, Tf, Usd, UsdGeom, UsdUtils
@@ -13,32 +14,42 @@ from .reading import Warnings
 _FORMATS = "usd, usda, usdc or usdz"
 
 
+@contextmanager
+def gathered_diagnostics(path: str | Path, warn: Warnings) -> Iterator[None]:
+    """What USD would print on stderr meanwhile becomes warnings about ``path``."""
+    delegate = UsdUtils.CoalescingDiagnosticDelegate()
+    try:
+        yield
+    finally:
+        for diagnostic in delegate.TakeUncoalescedDiagnostics():
+            warn(path, _short(diagnostic.commentary))
+        del delegate
+
+
 def open_stage(
-    path: str | Path, warn: Warnings, session_layer: str | Path | None = None, mask: str | Iterable[str] | None = None
+    path: str | Path,
+    session_layer: str | Path | None = None,
+    mask: str | Iterable[str] | None = None,
+    keep: Iterable[str] = (),
 ) -> Usd.Stage:
     """Open a stage, loading all payloads.
 
     ``session_layer``: file whose opinions are stronger than the stage's. ``mask``: prim paths, as a sequence or one
-    string with commas or blanks between; only they, their ancestors and descendants and what they are bound to exist.
+    string with commas or blanks between; only they, their ancestors and descendants, what they are bound to and the
+    prims of the absolute paths in ``keep`` exist.
 
     Raises StageError when the file is missing, is no USD, or holds no prim.
     """
     root = _layer(path)
     session = Sdf.Layer.CreateAnonymous("session") if session_layer is None else _layer(session_layer)
-    quiet = UsdUtils.CoalescingDiagnosticDelegate()
     try:
         if mask is None:
             stage = Usd.Stage.Open(root, session)
         else:
-            stage = Usd.Stage.OpenMasked(root, session, _mask(mask))
+            stage = Usd.Stage.OpenMasked(root, session, _mask([*_paths(mask), *(k for k in keep if k.startswith("/"))]))
             stage.ExpandPopulationMask()
     except Tf.ErrorException as error:
         raise StageError(f"{path}: cannot be opened as a stage ({_first_error(error)})") from None
-    finally:
-        said = [d.commentary for d in quiet.TakeUncoalescedDiagnostics()]
-        del quiet
-    for message in {**dict.fromkeys(str(e) for e in stage.GetCompositionErrors()), **dict.fromkeys(map(_bare, said))}:
-        warn(path, _short(message))
     if not stage.GetPseudoRoot().GetAllChildren():
         wanted = "no prim matches the mask" if mask else "the stage has no prims"
         raise StageError(f"{path}: {wanted}; there is nothing to render")
@@ -77,9 +88,9 @@ def _paths(mask: str | Iterable[str]) -> list[str]:
     return mask.replace(",", " ").split() if isinstance(mask, str) else [str(p) for p in mask]
 
 
-def _mask(mask: str | Iterable[str]) -> Usd.StagePopulationMask:
+def _mask(paths: Iterable[str]) -> Usd.StagePopulationMask:
     population = Usd.StagePopulationMask()
-    for path in _paths(mask):
+    for path in paths:
         if not Sdf.Path.IsValidPathString(path) or not Sdf.Path(path).IsAbsoluteRootOrPrimPath():
             raise StageError(f"mask names {path!r}; expected absolute prim paths such as /World/ball")
         population.Add(path)

@@ -1,6 +1,7 @@
 """Instances: meshes in metres about the scene's origin, with their materials."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from pxr import Usd
@@ -11,6 +12,8 @@ from .binding import bound_materials, slot_prims
 from .geometry import Geometry
 from .material import Materials
 from .reading import Reading
+from .traverse import Placed
+from .vectors import lengths
 
 
 def to_metres(reading: Reading, world: np.ndarray, origin: np.ndarray) -> np.ndarray:
@@ -19,6 +22,12 @@ def to_metres(reading: Reading, world: np.ndarray, origin: np.ndarray) -> np.nda
     metric[:3] *= reading.metres
     metric[:3, 3] -= origin
     return metric
+
+
+def check_finite(reading: Reading, placed: Placed) -> None:
+    """StageError unless the prim's transform is finite."""
+    if not np.isfinite(placed.world).all():
+        raise StageError(f"{reading.path}: {placed.path} has a transform that is not finite; repair its xformOps")
 
 
 def place_instances(
@@ -32,8 +41,31 @@ def place_instances(
     indices = {path: tuple(materials.index(next(bound)) for _ in found) for path, found in slots.items()}
     instances = []
     for placed, mesh in geometry.placements:
+        check_finite(reading, placed)
         transform = to_metres(reading, placed.world, origin)
-        if not np.isfinite(transform).all():
-            raise StageError(f"{reading.path}: {placed.path} has a transform that is not finite; repair its xformOps")
+        rank = _rank(transform[:3, :3])
+        if rank < 2:
+            reading.warn(placed.path, "its transform has a scale of 0; it is left out")
+            continue
+        if rank == 2:
+            transform, mesh = _baked(geometry, mesh, transform)
         instances.append(Instance(placed.path, mesh, transform, indices[str(placed.prim.GetPath())]))
     return instances
+
+
+def _rank(linear: np.ndarray) -> int:
+    """Dimension of what a matrix [3, 3] maps space to."""
+    sizes = lengths(linear.T)
+    if abs(np.linalg.det(linear)) > 1e-9 * sizes.prod():
+        return 3
+    scales = np.linalg.svd(linear, compute_uv=False)
+    return int((scales > 1e-9 * scales[0]).sum())
+
+
+def _baked(geometry: Geometry, index: int, transform: np.ndarray) -> tuple[np.ndarray, int]:
+    """(translation, index of a mesh with the rest of the transform in its points), for a matrix without inverse."""
+    mesh = geometry.meshes[index]
+    geometry.meshes.append(replace(mesh, points=mesh.points @ transform[:3, :3].T, normals=None, tangents=None))
+    translation = np.eye(4)
+    translation[:3, 3] = transform[:3, 3]
+    return translation, len(geometry.meshes) - 1

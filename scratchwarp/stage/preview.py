@@ -88,7 +88,9 @@ def _value(reading: Reading, shader: UsdShade.Shader, name: str, default: Any, t
     node = UsdShade.Shader(source.GetPrim())
     kind = str(node.GetShaderId() or "")
     if kind == "UsdUVTexture":
-        return read_texture_input(reading, node, source.GetBaseName(), default, textures, isinstance(default, tuple))
+        # UsdPreviewSurface wants normal maps read raw, whatever an image of three 8-bit channels usually is.
+        automatic = "raw" if name == "normal" else "auto"
+        return read_texture_input(reading, node, source.GetBaseName(), default, textures, automatic)
     if kind.startswith(_PRIMVAR_READER):
         variable = node.GetInput("varname")
         named = variable.GetValueProducingAttributes() if variable else []

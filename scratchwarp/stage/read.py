@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from pxr import Usd, UsdGeom
 
-from scratchwarp.scene import Camera, Scene
+from scratchwarp.scene import Camera, Scene, StageError
 
 from .camera import find_camera, framing_camera, read_camera
 from .complain import complain
@@ -16,7 +16,7 @@ from .curves import CurveSets
 from .geometry import Geometry, read_geometry
 from .illuminate import read_lights
 from .material import Materials
-from .open import metres_per_unit, open_stage
+from .open import gathered_diagnostics, metres_per_unit, open_stage
 from .options import StageSettings, read_settings
 from .place import place_instances
 from .reading import Reading, TextureLoader, Warnings
@@ -24,6 +24,7 @@ from .texture import Textures
 from .traverse import placed_prims
 
 PURPOSES = ("default", "render")
+ALL_PURPOSES = ("default", "render", "proxy", "guide")
 
 
 def read(
@@ -56,18 +57,38 @@ def read(
     """
     started = time.perf_counter()
     warnings = Warnings()
-    stage = open_stage(path, warnings, session_layer, mask)
-    reading = Reading(
-        stage=stage,
-        time=Usd.TimeCode.EarliestTime() if frame is None else Usd.TimeCode(float(frame)),
-        path=str(path),
-        metres=metres_per_unit(path, stage),
-        warn=warnings,
-        load_texture=load_texture,
+    unknown = sorted({*purposes} - {*ALL_PURPOSES})
+    if unknown:
+        raise StageError(f"purposes name {', '.join(unknown)}; known are {', '.join(ALL_PURPOSES)}")
+    if frame is not None and not np.isfinite(frame):
+        raise StageError(f"frame is {frame}; expected a time code")
+    with gathered_diagnostics(path, warnings):
+        stage = open_stage(path, session_layer, mask, [k for k in (camera, render_settings) if k])
+        reading = Reading(
+            stage=stage,
+            time=Usd.TimeCode.EarliestTime() if frame is None else Usd.TimeCode(float(frame)),
+            path=str(path),
+            metres=metres_per_unit(path, stage),
+            warn=warnings,
+            load_texture=load_texture,
+        )
+        settings = read_settings(reading, render_settings)
+        reading = replace(reading, purposes=_purposes(tuple(purposes), settings))
+        scene = _scene(reading, settings, camera)
+    scene = replace(
+        scene,
+        time=None if frame is None else float(frame),
+        warnings=warnings.lines(),
+        seconds=time.perf_counter() - started,
     )
-    settings = read_settings(reading, render_settings)
-    reading = replace(reading, purposes=_purposes(tuple(purposes), settings))
+    if warn is not None:
+        for sentence in scene.warnings:
+            warn(sentence)
+    return scene
 
+
+def _scene(reading: Reading, settings: StageSettings, camera: str | None) -> Scene:
+    """The scene, but for what is known only at the end."""
     places = placed_prims(reading)
     geometry = read_geometry(reading, places)
     view, origin = _camera(reading, find_camera(reading, camera, settings.camera), geometry, settings)
@@ -76,8 +97,8 @@ def read(
     instances = place_instances(reading, geometry, origin, materials, settings.binding_purposes)
     complain(reading, geometry.meshes, instances, materials.records)
     lit = read_lights(reading, places, origin, geometry.meshes, instances, materials, textures)
-    scene = Scene(
-        path=str(path),
+    return Scene(
+        path=reading.path,
         meshes=tuple(lit.meshes),
         instances=tuple(lit.instances),
         materials=tuple(materials.records),
@@ -85,17 +106,10 @@ def read(
         camera=view,
         textures=tuple(textures.records),
         curves=tuple(curves.records),
-        time=None if frame is None else float(frame),
         origin=origin,
-        up=_up(stage),
+        up=_up(reading.stage),
         options=settings.options,
-        warnings=warnings.lines(),
-        seconds=time.perf_counter() - started,
     )
-    if warn is not None:
-        for sentence in scene.warnings:
-            warn(sentence)
-    return scene
 
 
 def _purposes(asked: tuple[str, ...], settings: StageSettings) -> tuple[str, ...]:

@@ -15,9 +15,11 @@ _WRAPS = ("black", "clamp", "repeat", "mirror")
 
 
 def read_texture_input(
-    reading: Reading, node: UsdShade.Shader, output: str, default: Any, textures: Textures, is_color: bool
+    reading: Reading, node: UsdShade.Shader, output: str, default: Any, textures: Textures, automatic: str = "auto"
 ) -> Any:
     """A TextureInput for ``output`` (rgb, r, g, b, a) of a UsdUVTexture.
+
+    ``automatic``: colour space of an image whose sourceColorSpace is auto and whose file attribute has none.
 
     When the image cannot be read: the authored ``fallback`` of that output, else ``default``. Wrapping that is not
     authored is ``repeat``; ``useMetadata`` is ``black``, as UsdPreviewSurface has it for files without metadata.
@@ -29,7 +31,8 @@ def read_texture_input(
     file = _source(node, "file")
     asset = file.Get(reading.time) if file else None
     space = _space(reading, node, file)
-    index = textures.index(path, asset, space)
+    index = textures.index(path, asset, automatic if space == "auto" else space)
+    is_color = isinstance(default, tuple)
     if index < 0:
         fallback = _get(reading, node, "fallback")
         if fallback is None:

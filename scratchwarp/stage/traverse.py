@@ -37,7 +37,7 @@ def placed_prims(reading: Reading) -> list[Placed]:
     again where it lies on the stage.
     """
     prototypes: set[Sdf.Path] = set()
-    found = list(_walk(reading, reading.stage.GetPseudoRoot(), reading.world, None, _ALL, prototypes))
+    found = list(_walk(reading, reading.stage.GetPseudoRoot(), reading.world, None, _ALL, prototypes, ()))
     if not prototypes:
         return found
     return [p for p in found if not _below(p.prim.GetPath(), p.path, prototypes)]
@@ -55,8 +55,9 @@ def _walk(
     purpose: UsdGeom.Imageable.PurposeInfo | None,
     predicate: Usd._PrimFlagsPredicate,
     prototypes: set[Sdf.Path],
+    within: tuple[Sdf.Path, ...],
 ) -> Iterator[Placed]:
-    """Visible prims at and below ``root``; ``place`` gives a prim's matrix."""
+    """Visible prims at and below ``root``; ``place`` gives a prim's matrix, ``within`` are the instancers around it."""
     todo = [(root, purpose)]
     while todo:
         prim, inherited = todo.pop()
@@ -69,7 +70,7 @@ def _walk(
             continue
         included = inherited is None or str(inherited.purpose or "default") in reading.purposes
         if prim.IsA(UsdGeom.PointInstancer):
-            yield from _instancer(reading, UsdGeom.PointInstancer(prim), place, inherited, prototypes)
+            yield from _instancer(reading, UsdGeom.PointInstancer(prim), place, inherited, prototypes, within)
             continue
         if prim.IsA(UsdGeom.Gprim) or prim.HasAPI(UsdLux.LightAPI):
             yield Placed(prim, str(prim.GetPath()), place(prim), included)
@@ -82,8 +83,16 @@ def _instancer(
     place: Callable[[Usd.Prim], np.ndarray],
     purpose: UsdGeom.Imageable.PurposeInfo | None,
     prototypes: set[Sdf.Path],
+    within: tuple[Sdf.Path, ...],
 ) -> Iterator[Placed]:
+    """Everything that an instancer places, instance by instance."""
     path = instancer.GetPath()
+    if path in within:
+        reading.warn(path, "is a prototype of itself; the inner instances are left out")
+        return
+    primvars = UsdGeom.PrimvarsAPI(instancer).GetPrimvarsWithAuthoredValues()
+    if any(p.GetInterpolation() != UsdGeom.Tokens.constant for p in primvars):
+        reading.warn(path, "primvars of single instances are not honoured")
     stage = reading.stage
     targets = instancer.GetPrototypesRel().GetForwardedTargets()
     prototypes.update(t for t in targets if not t.HasPrefix(path))
@@ -108,7 +117,7 @@ def _instancer(
         def relative(prim: Usd.Prim, root: Usd.Prim = root) -> np.ndarray:
             return np.array(reading.xforms.ComputeRelativeTransform(prim, root)[0]).T
 
-        parts = list(_walk(reading, root, relative, purpose, _PROTOTYPE, prototypes))
+        parts = list(_walk(reading, root, relative, purpose, _PROTOTYPE, prototypes, (*within, path)))
         for i in np.flatnonzero(chosen[numbers] == which):
             for part in parts:
                 name = f"{path}[{numbers[i]}]{part.path.removeprefix(str(target))}"
