@@ -1,15 +1,26 @@
 """A cross-section and what it does to light: shapes, a 2D ray tracer in Warp, tables over (phi_o, phi_i).
 
-Files: ``profile`` the record, ``shapes`` named ones, ``outline`` made ready for kernels, ``tracer_device`` the next
-hit, ``path_device`` a whole path, ``trace_kernels`` and ``energy_kernels`` the two passes, ``launch`` threads,
-``paths`` their host, ``simulate`` symmetries and normalisation, ``theta`` models along the scratch, ``table`` the
-result, ``table_device`` its sampling on the device.
+Files, the way a table is made: ``profile`` the record, ``shapes`` named ones, ``outline`` scaled for the kernels;
+``tracer_device`` the next hit, ``path_device`` a whole path, ``trace_kernels`` all rays of a column; ``reflectors``
+Fresnel as rows, ``energy_kernels`` and ``polarised_kernels`` what paths carry and where it lands; ``paths`` the host
+of both passes, ``launch`` threads; ``tracing`` columns and symmetries, ``balance`` (and its kernels) whole tables,
+``simulation`` the calls; ``theta`` models along the scratch; ``table`` the result, ``table_device`` and
+``table_kernels`` its sampling; ``single_rays``, ``cache`` tables on disk.
 """
 
+from scratchwarp.profiles.cache import Store as Store
+from scratchwarp.profiles.cache import read_table as read_table
+from scratchwarp.profiles.cache import store as store
+from scratchwarp.profiles.cache import write_table as write_table
 from scratchwarp.profiles.profile import Profile as Profile
 from scratchwarp.profiles.shapes import shape as shape
 from scratchwarp.profiles.shapes import shape_names as shape_names
-from scratchwarp.profiles.simulate import SAMPLERS as SAMPLERS
-from scratchwarp.profiles.simulate import simulate as simulate
-from scratchwarp.profiles.simulate import simulate_full as simulate_full
+from scratchwarp.profiles.simulation import simulate as simulate
+from scratchwarp.profiles.simulation import simulate_full as simulate_full
+from scratchwarp.profiles.single_rays import Rays as Rays
+from scratchwarp.profiles.single_rays import trace as trace
 from scratchwarp.profiles.table import Table as Table
+from scratchwarp.profiles.theta import THETA_MODELS as THETA_MODELS
+from scratchwarp.profiles.tracing import SAMPLERS as SAMPLERS
+from scratchwarp.profiles.tracing import Traced as Traced
+from scratchwarp.profiles.tracing import trace_paths as trace_paths

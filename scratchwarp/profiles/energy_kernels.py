@@ -13,43 +13,42 @@ _NARROWEST = wp.constant(2.0e-3)
 
 
 @wp.struct
-class Reflectors:
-    """Reflectance over the cosine in the plane, a row for each slice in theta and channel, and what it makes of each
-    path."""
-
-    table: wp.array(dtype=float, ndim=2)  # [layers, nodes], cosine from 0 to 1
-    product: wp.array(dtype=float, ndim=3)  # [lines, rays, layers]
-
-
-@wp.struct
 class Deposit:
     """Bins that the energy of each column goes to."""
 
     half: wp.array(dtype=float)  # [lines] half the range of incidence [rad] that a line stands for
+    product: wp.array(dtype=float, ndim=3)  # [lines, rays, layers] reflectance along each path
     energy: wp.array(dtype=float, ndim=3)  # [columns, 3 + layers, bins]: by 1, 2, 3 and more bounces, then the layers
     lost: wp.array(dtype=float)  # [columns]
     lines_each: int  # lines a column
 
 
 @wp.kernel
-def reflect_along(start: int, lines: Lines, cosines: Cosines, reflectors: Reflectors):
-    """Product of the reflectances at a path's bounces, for every ray of a line and every row of the table."""
+def reflect_along(
+    start: int,
+    lines: Lines,
+    cosines: Cosines,
+    table: wp.array(dtype=float, ndim=2),
+    product: wp.array(dtype=float, ndim=3),
+):
+    """Product of the reflectances at a path's bounces, for every ray of a line and every row of ``table`` [layers,
+    nodes] (over the cosine in the plane, from 0 to 1)."""
     line = start + wp.tid()
-    layers = reflectors.table.shape[0]
-    nodes = reflectors.table.shape[1]
+    layers = table.shape[0]
+    nodes = table.shape[1]
     for ray in range(lines.counts[line, 0]):
         for layer in range(layers):
-            reflectors.product[line, ray, layer] = 1.0
+            product[line, ray, layer] = 1.0
         base = line * cosines.capacity + lines.first[line, ray]
         for bounce in range(lines.bounces[line, ray]):
             place = wp.abs(cosines.value[base + bounce]) * float(nodes - 1)
             node = wp.min(int(place), nodes - 2)
             between = place - float(node)
             for layer in range(layers):
-                lower = reflectors.table[layer, node]
-                upper = reflectors.table[layer, node + 1]
+                lower = table[layer, node]
+                upper = table[layer, node + 1]
                 factor = lower + between * (upper - lower)
-                reflectors.product[line, ray, layer] = factor * reflectors.product[line, ray, layer]
+                product[line, ray, layer] = factor * product[line, ray, layer]
 
 
 @wp.func
@@ -72,7 +71,6 @@ def share_below(edge: float, low: float, high: float, smear: float) -> float:
 def spread(
     deposit: Deposit,
     lines: Lines,
-    reflectors: Reflectors,
     column: int,
     line: int,
     left: int,
@@ -81,7 +79,7 @@ def spread(
 ):
     """Put the energy of a strip whose rays agree (or of one ray: left == right) over the exit angles it reaches."""
     bins = deposit.energy.shape[2]
-    layers = reflectors.table.shape[0]
+    layers = deposit.product.shape[2]
     bounces = lines.bounces[line, left]
     if bounces < 0:
         deposit.lost[column] += energy
@@ -112,12 +110,12 @@ def spread(
             below = upto
             deposit.energy[column, order, j] += part
             for layer in range(layers):
-                product = 0.5 * (reflectors.product[line, left, layer] + reflectors.product[line, right, layer])
+                product = 0.5 * (deposit.product[line, left, layer] + deposit.product[line, right, layer])
                 deposit.energy[column, 3 + layer, j] += part * product
 
 
 @wp.kernel
-def deposit_strips(start: int, lines: Lines, reflectors: Reflectors, deposit: Deposit):
+def deposit_strips(start: int, lines: Lines, deposit: Deposit):
     """Each strip over the angles between its two rays; half to each ray where they still disagree."""
     column = start + wp.tid()
     for k in range(deposit.lines_each):
@@ -128,18 +126,18 @@ def deposit_strips(start: int, lines: Lines, reflectors: Reflectors, deposit: De
             width = lines.width[line, strip]
             energy = width / float(deposit.lines_each)
             if broken(lines, line, left, right, width):
-                spread(deposit, lines, reflectors, column, line, left, left, 0.5 * energy)
-                spread(deposit, lines, reflectors, column, line, right, right, 0.5 * energy)
+                spread(deposit, lines, column, line, left, left, 0.5 * energy)
+                spread(deposit, lines, column, line, right, right, 0.5 * energy)
             else:
-                spread(deposit, lines, reflectors, column, line, left, right, energy)
+                spread(deposit, lines, column, line, left, right, energy)
 
 
 @wp.kernel
-def deposit_samples(start: int, lines: Lines, reflectors: Reflectors, deposit: Deposit):
+def deposit_samples(start: int, lines: Lines, deposit: Deposit):
     """Each ray counts 1, which float32 adds without error up to 16 million; the host divides."""
     column = start + wp.tid()
     bins = deposit.energy.shape[2]
-    layers = reflectors.table.shape[0]
+    layers = deposit.product.shape[2]
     count = lines.counts[column, 0]
     for ray in range(count):
         bounces = lines.bounces[column, ray]
@@ -150,4 +148,4 @@ def deposit_samples(start: int, lines: Lines, reflectors: Reflectors, deposit: D
             j = wp.clamp(int(wp.floor(place)), 0, bins - 1)
             deposit.energy[column, wp.min(bounces, 3) - 1, j] += 1.0
             for layer in range(layers):
-                deposit.energy[column, 3 + layer, j] += reflectors.product[column, ray, layer]
+                deposit.energy[column, 3 + layer, j] += deposit.product[column, ray, layer]

@@ -11,13 +11,12 @@ from scratchwarp.profiles import energy_kernels as energies
 from scratchwarp.profiles.launch import launch_tiles
 from scratchwarp.profiles.outline import outline
 from scratchwarp.profiles.path_device import Cosines
+from scratchwarp.profiles.polarised_kernels import Amplitudes, reflect_polarised
 from scratchwarp.profiles.profile import Profile
+from scratchwarp.profiles.reflectors import Rows
 from scratchwarp.profiles.trace_kernels import Lines, beam_kernel, sample_kernel
 
 _BOUNCES_EXPECTED = 4
-# Reflectance against the cosine is tabulated this finely and interpolated linearly: error below 1e-5 for metals and
-# glass.
-NODES = 2049
 
 
 @dataclass(frozen=True)
@@ -52,46 +51,58 @@ class Paths:
         """Rays traced."""
         return int(self.lines.counts.numpy()[:, 0].sum())
 
-    def tabulate(self, reflectance: np.ndarray | None = None, product: Any = None) -> tuple[np.ndarray, np.ndarray]:
+    def tabulate(self, rows: Rows | None = None) -> tuple[np.ndarray, np.ndarray]:
         """``(energy, lost)``: ``energy`` float32 ``[columns, 3 + layers, bins]`` is the share of a column's light
         that leaves into each bin of phi_o after 1, 2, 3 and more reflections off mirrors, then for each layer of
-        ``reflectance`` ``[layers, nodes]`` (against the cosine in the plane, from 0 to 1, equally spaced). ``lost``
-        ``[columns]`` is the share of paths cut off. ``product`` ``[lines, rays, layers]`` (a Warp array) replaces
-        what ``reflectance`` would give each path.
-        """
-        layers = 0 if reflectance is None else len(reflectance)
-        if product is not None:
-            layers = product.shape[2]
+        ``rows``. ``lost`` ``[columns]`` is the share of paths cut off."""
+        layers = 0 if rows is None else rows.layers
         line_count, capacity = self.lines.phi_o.shape
         columns = line_count // self.beams.lines_each
-        reflectors, deposit = energies.Reflectors(), energies.Deposit()
-        table = np.ones((layers, 2)) if reflectance is None else reflectance
-        reflectors.table = wp.array(np.ascontiguousarray(table, np.float32), dtype=float, device="cpu")
-        reflectors.product = product if product is not None else _products(line_count, capacity, layers)
-        deposit.half = wp.array(self.beams.half.astype(np.float32), dtype=float, device="cpu")
+        shape = (line_count, capacity, layers) if layers else (1, 1, 0)
+        product = wp.empty(shape, dtype=float, device="cpu")
+        if rows is not None and rows.amplitude is not None:
+            amplitudes = Amplitudes()
+            amplitudes.table = wp.array(rows.amplitude, dtype=wp.vec4, device="cpu")
+            amplitudes.sine = _floats(rows.sine)
+            inputs = [self.lines, self.cosines, amplitudes, product]
+            launch_tiles(reflect_polarised, line_count, inputs, self.threads)
+        elif rows is not None:
+            inputs = [self.lines, self.cosines, _floats(rows.power), product]
+            launch_tiles(energies.reflect_along, line_count, inputs, self.threads)
+        deposit = energies.Deposit()
+        deposit.half = _floats(self.beams.half)
+        deposit.product = product
         deposit.energy = wp.zeros((columns, 3 + layers, self.bins), dtype=float, device="cpu")
         deposit.lost = wp.zeros(columns, dtype=float, device="cpu")
         deposit.lines_each = self.beams.lines_each
         fill = energies.deposit_strips if self.sampler == "beam" else energies.deposit_samples
-        if reflectance is not None:
-            launch_tiles(energies.reflect_along, line_count, [self.lines, self.cosines, reflectors], self.threads)
-        launch_tiles(fill, columns, [self.lines, reflectors, deposit], self.threads)
+        launch_tiles(fill, columns, [self.lines, deposit], self.threads)
         energy, lost = deposit.energy.numpy(), deposit.lost.numpy()
         if self.sampler != "beam":
             energy, lost = energy / np.float32(capacity), lost / np.float32(capacity)
         return energy, lost
 
 
-def trace_paths(
-    profile: Profile, beams: Beams, *, bins: int, rays: int, sampler: str, max_bounces: int, seed: int, threads: int
+def trace_lines(
+    profile: Profile,
+    beams: Beams,
+    *,
+    bins: int,
+    rays: int,
+    sampler: str,
+    max_bounces: int,
+    seed: int,
+    first: int,
+    threads: int,
 ) -> Paths:
     """Send ``rays`` rays a line into ``profile`` and keep what they did. ``sampler``: "beam", "stratified" or "random".
 
-    The pool of cosines holds a few bounces a ray; when paths are longer it is enlarged and the lines traced again.
+    ``first`` numbers the lines for the random samplers. The pool of cosines holds a few bounces a ray; when paths are
+    longer it is enlarged and the lines traced again.
     """
     target = outline(profile)
     lines = _lines(len(beams.phi), rays, sampler == "beam")
-    lines.phi = wp.array(beams.phi.astype(np.float32), dtype=float, device="cpu")
+    lines.phi = _floats(beams.phi)
     lines.bin = np.pi / bins
     lines.max_bounces = max_bounces
     cosines = Cosines()
@@ -103,9 +114,7 @@ def trace_paths(
         lines.base = max(2, rays // 2)
     else:
         kernel = sample_kernel(height_field)
-        low: Any = wp.array(beams.low.astype(np.float32), dtype=float, device="cpu")
-        high: Any = wp.array(beams.high.astype(np.float32), dtype=float, device="cpu")
-        extra = [low, high, seed, int(sampler == "stratified")]
+        extra = [_floats(beams.low), _floats(beams.high), seed, first, int(sampler == "stratified")]
     while True:
         cosines.value = wp.empty(len(beams.phi) * capacity, dtype=float, device="cpu")
         cosines.capacity = capacity
@@ -133,6 +142,5 @@ def _lines(count: int, capacity: int, strips: bool) -> Any:
     return lines
 
 
-def _products(lines: int, capacity: int, layers: int) -> Any:
-    shape = (lines, capacity, layers) if layers else (1, 1, 1)
-    return wp.empty(shape, dtype=float, device="cpu")
+def _floats(values: Any) -> Any:
+    return wp.array(np.ascontiguousarray(values, np.float32), dtype=float, device="cpu")

@@ -32,7 +32,7 @@ def shape(
     depth: float = 0.5,
     *,
     rim: float = 0.0,
-    rim_width: float = 0.15,
+    rim_width: float = 0.25,
     isolated: bool = False,
     **parameters: Any,
 ) -> Profile:
@@ -93,9 +93,9 @@ def flat() -> Outline:
 
 
 @_register
-def v_groove() -> Outline:
-    """Two flat facets that meet at depth 1."""
-    return np.array([[0.0, 0.0], [0.5, -1.0], [1.0, 0.0]]), None
+def v_groove(apex: float = 0.5) -> Outline:
+    """Two flat facets that meet at depth 1, at x = ``apex`` in [0, 1]."""
+    return np.array([[0.0, 0.0], [_share("apex", apex), -1.0], [1.0, 0.0]]), None
 
 
 @_register
@@ -105,11 +105,17 @@ def rectangle() -> Outline:
 
 
 @_register
-def trapezoid(floor: float = 0.5) -> Outline:
-    """Sloping walls and a flat floor of width ``floor`` in [0, 1]."""
-    if not 0.0 <= floor <= 1.0:
-        raise ValueError(f"floor must lie in [0, 1], got {floor}")
-    return np.array([[0.0, 0.0], [0.5 - floor / 2, -1.0], [0.5 + floor / 2, -1.0], [1.0, 0.0]]), None
+def trapezoid(floor: float = 0.5, apex: float = 0.5) -> Outline:
+    """Sloping walls and a flat floor of width ``floor`` in [0, 1]; the left wall takes the share ``apex`` of the
+    rest."""
+    left = _share("apex", apex) * (1.0 - _share("floor", floor))
+    return np.array([[0.0, 0.0], [left, -1.0], [left + floor, -1.0], [1.0, 0.0]]), None
+
+
+def _share(name: str, value: float) -> float:
+    if not 0.0 <= value <= 1.0:
+        raise ValueError(f"{name} must lie in [0, 1], got {value}")
+    return value
 
 
 def _count(segments: int) -> int:

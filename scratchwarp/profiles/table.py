@@ -114,6 +114,24 @@ def _angle(name: str, value: Any) -> np.ndarray:
     return np.clip(angles, -_HALF_PI, _HALF_PI)
 
 
+def assembled(by_bounce: np.ndarray, lost: np.ndarray, slices: np.ndarray | None, **fields: Any) -> Table:
+    """A table from what was simulated: the total, bins and sampling data follow from ``by_bounce``, ``normal`` is the
+    first slice."""
+    bins = by_bounce.shape[-1]
+    mirror, weights = by_bounce.sum(axis=0), bin_weights(bins)
+    return Table(
+        mirror=mirror,
+        by_bounce=by_bounce,
+        normal=None if slices is None else slices[0],
+        angles=bin_angles(bins),
+        weights=weights,
+        lost=lost,
+        cdf=cumulative(mirror, weights),
+        slices=slices,
+        **fields,
+    )
+
+
 def cumulative(mirror: np.ndarray, weights: np.ndarray) -> np.ndarray:
     """For each row (phi_o bin) of ``mirror`` the cumulative share of mirror * weight, float64 ``[M, M + 1]``; uniform
     in a row of none."""

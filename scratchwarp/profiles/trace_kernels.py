@@ -142,11 +142,12 @@ def sample_kernel(height_field: bool) -> Any:
         low: wp.array(dtype=float),
         high: wp.array(dtype=float),
         seed: int,
+        first: int,
         stratified: int,
     ):
         line = start + wp.tid()
         count = lines.x.shape[1]
-        state = wp.rand_init(seed, line)
+        state = wp.rand_init(seed, first + line)
         offset = wp.randf(state)
         used = int(0)
         for ray in range(count):
@@ -180,8 +181,8 @@ def ray_kernel(height_field: bool) -> Any:
     follow = path_function(height_field)
 
     @wp.kernel(module="unique", module_options={"enable_backward": False})
-    def trace_rays(outline: Outline, lines: Lines, cosines: Cosines):
-        line = wp.tid()
+    def trace_rays(start: int, outline: Outline, lines: Lines, cosines: Cosines):
+        line = start + wp.tid()
         phi_o, rate_x, rate_phi, bounces = follow(
             outline, lines.x[line, 0], lines.phi[line], lines.max_bounces, cosines, line * cosines.capacity, 0
         )

@@ -192,14 +192,16 @@ def march(outline: Outline, o: wp.vec2, d: wp.vec2, k: int, t: float):
 def search(outline: Outline, o: wp.vec2, d: wp.vec2, k: int, t: float):
     """As ``march`` for any outline of flat facets: every facet is tested and the nearest front taken.
 
-    Facets next to the one just left are met exactly when the vertex between them is concave, whatever the sign that
-    rounding gives the distance.
+    A facet next to the one just left is met whenever the vertex between them is concave, the ray comes from its front
+    and its far end lies beyond the ray: neither the sign of the distance nor the side of the shared vertex, both near
+    zero in a corner, is asked for.
     """
     count = outline.vertex.shape[0] - 1
     hit = int(-1)
     where = float(-1.0)
     shift = float(0.0)
     left = wp.where(t >= 0.0, k, -9)
+    entering = t < 0.0
     p = o
     done = bool(False)
     turns = int(0)
@@ -208,15 +210,21 @@ def search(outline: Outline, o: wp.vec2, d: wp.vec2, k: int, t: float):
         near = cross2(d, outline.vertex[0] - p)
         for j in range(count):
             far = cross2(d, outline.vertex[j + 1] - p)
-            if near <= 0.0 and far > 0.0 and j != left:
-                u = near / (near - far)
+            begins = near <= 0.0
+            ends = far > 0.0
+            ahead = j != left
+            if j == left - 1:
+                ahead = outline.concave[left] != 0
+                ends = True
+            if j == left + 1:
+                ahead = outline.concave[j] != 0
+                begins = True
+            if ahead and begins and ends and far > near:
+                u = wp.clamp(near / (near - far), 0.0, 1.0)
                 distance = wp.dot(d, on_facet(outline, j, u) - p)
-                ahead = distance >= 0.0
-                if j == left + 1:
-                    ahead = outline.concave[j] != 0
-                if j == left - 1:
-                    ahead = outline.concave[left] != 0
-                if ahead and distance < nearest:
+                # nothing is above the base line, so a ray that comes from there meets every facet ahead of it
+                beside = j == left - 1 or j == left + 1
+                if (distance >= 0.0 or entering or beside) and distance < nearest:
                     nearest = distance
                     hit = j
                     where = u
