@@ -11,6 +11,10 @@ Public names load on first use, so that ``import scratchwarp`` imports neither U
 import importlib
 import sys
 import types
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .render import render as render
 
 __version__ = "0.1.0"
 

@@ -135,3 +135,109 @@ def _effect(text: str) -> tuple[str, bool]:
     if not name or switch not in ("on", "off"):
         raise UsageError(f"--effect {text!r} is not NAME=on or NAME=off")
     return name, switch == "on"
+
+
+_EXAMPLES = {
+    "": """scratchwarp demo out
+  scratchwarp render ball.usda ball.exr -w 640 --spp 64
+  scratchwarp explain ball.usda""",
+    "render": """scratchwarp render ball.usda ball.exr -w 480 --spp 16
+  scratchwarp render ball.usda ball.png -cam /World/Close -color openColorIO
+  scratchwarp render shot.usda shot.####.exr --frames 101:110x3,115 --sessionLayer scratched.usda
+  scratchwarp render ball.usda ball.exr --aov depth,normal --effect interreflection=off --json
+  scratchwarp render ball.usda ball.exr --spp 4096 --checkpoint ball.part --resume""",
+    "explain": "scratchwarp explain ball.usda\n  scratchwarp explain ball.usda --effect shadows=off --json",
+    "simulate": """scratchwarp simulate quartic quartic.exr --depth 0.4
+  scratchwarp simulate groove.csv groove.png --metal gold --resolution 128
+  scratchwarp simulate ball.usda tables.##.npz""",
+    "validate": "scratchwarp validate ball.usda\n  scratchwarp validate ball.usda --strict --json",
+    "view": "scratchwarp view ball.usda\n  scratchwarp view ball.usda --screenshot look.png --frame 12",
+    "cache": "scratchwarp cache\n  scratchwarp cache --clear",
+    "demo": "scratchwarp demo out\n  scratchwarp demo out -w 320 --spp 4",
+}
+
+
+def parser() -> argparse.ArgumentParser:
+    """The whole command line: ``args.command`` is the name of the function of ``cli`` to run."""
+    from . import __version__
+    from .viewers import KEYS
+
+    whole = argparse.ArgumentParser(
+        prog="scratchwarp",
+        description="Render scratched, brushed and grooved surfaces from USD stages.",
+        epilog=f"examples:\n  {_EXAMPLES['']}",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    whole.add_argument("--version", action="version", version=f"scratchwarp {__version__}")
+    commands = whole.add_subparsers(dest="command", required=True, metavar="COMMAND")
+
+    def command(name: str, says: str, json_too: bool = False) -> argparse.ArgumentParser:
+        made = commands.add_parser(
+            name,
+            help=says,
+            description=f"{says[0].upper()}{says[1:]}.",
+            epilog=f"examples:\n  {_EXAMPLES[name]}",
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+            allow_abbrev=False,
+        )
+        made.add_argument("--quiet", action="store_true", help="say nothing but errors")
+        if json_too:
+            made.add_argument("--json", action="store_true", help="print results as JSON")
+        return made
+
+    made = command("render", "render a stage to EXR, PNG or NPZ", json_too=True)
+    add_stage(made)
+    made.add_argument("out", metavar="OUT", help="image.exr, .png or .npz; ### stands for the frame number")
+    when = made.add_mutually_exclusive_group()
+    when.add_argument("--frames", "-f", metavar="SPEC", help="101:110x3,115 is 101, 104, 107, 110 and 115")
+    when.add_argument("--defaultTime", "-d", action="store_true", help="values without a time, as without --frames")
+    made.add_argument("--aov", action="append", default=[], metavar="NAMES", help="layers besides color, alpha [all]")
+    made.add_argument("--checkpoint", metavar="FILE", help="keep finished tiles here while rendering")
+    made.add_argument("--resume", action="store_true", help="start from the tiles of --checkpoint")
+    add_settings(made)
+    add_color(made)
+
+    made = command("explain", "say which effects a stage calls for, and why", json_too=True)
+    add_stage(made)
+    add_settings(made)
+
+    made = command("simulate", "write the table of a profile, or those of a stage's layers")
+    made.add_argument("source", metavar="PROFILE|STAGE", help="name of a shape, file of points (x, z), or USD file")
+    made.add_argument("out", metavar="OUT", help="table.exr, .npz, or .png for a picture: phi_o upwards, square root")
+    made.add_argument("--layer", metavar="NAME", help="the layer of the stage that is meant")
+    made.add_argument("--depth", type=float, default=0.5, help="of a named shape, in widths [0.5]")
+    made.add_argument(
+        "--isolated", action="store_true", help="alone in flat ground; a stage's profiles say it themselves"
+    )
+    made.add_argument("--metal", help="reflects as aluminium, gold, copper, silver, iron or brass [a mirror]")
+    made.add_argument("--ior", type=float, help="reflects as a dielectric of this index")
+    made.add_argument("--resolution", type=int, default=256, help="bins each way [256]")
+    made.add_argument("--rays", type=int, default=512, help="rays for each bin of phi_i [512]")
+    made.add_argument("--sampler", default="beam", help="beam, stratified or random [beam]")
+    made.add_argument("--incidence", default="cell", help="cell or centre [cell]")
+    made.add_argument("--maxBounces", type=int, default=2000, help="[2000]")
+    made.add_argument("--seed", type=int, default=0, help="[0]")
+
+    made = command("validate", "check a stage against the scratch schemas", json_too=True)
+    made.add_argument("stage", metavar="FILE", help="USD file")
+    made.add_argument("--strict", "-t", action="store_true", help="warnings count as errors")
+
+    made = command("view", "show a stage, its scratches, profiles and tables in a window")
+    made.epilog = "\n".join([str(made.epilog), "", "keys:", *(f"  {key}  {what}" for key, what in KEYS.items())])
+    made.add_argument("stage", metavar="STAGE", help="USD file")
+    made.add_argument("--screenshot", metavar="FILE", help="write this picture instead, without a display")
+    made.add_argument("--frame", "-f", metavar="N", help="time code [the default time]")
+    made.add_argument("--camera", "-cam", metavar="NAME", help="camera prim, by path or name")
+    made.add_argument("--imageWidth", "-w", type=int, metavar="PIXELS", help="of the rendered image in it")
+    made.add_argument("--spp", type=int, help="samples a pixel of the rendered image in it")
+
+    made = command("demo", "author the demo stages and render each to EXR and PNG")
+    made.add_argument("out", metavar="OUT_DIR", help="folder for stages and images; made when missing")
+    made.add_argument("--imageWidth", "-w", type=int, metavar="PIXELS", help="[as the stages say]")
+    made.add_argument("--spp", type=int, help="samples a pixel [as the stages say]")
+    made.add_argument("--threads", type=int, help="worker threads [all cores]")
+
+    made = command("cache", "say what is kept on disk between runs, or clear it")
+    made.add_argument("--clear", action="store_true", help="remove all simulated tables")
+    made.add_argument("--clearKernels", action="store_true", help="remove Warp's kernels, those of other programs too")
+    return whole

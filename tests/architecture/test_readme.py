@@ -46,3 +46,14 @@ def test_no_binary_assets():
     files = [p for folder in folders for p in (repository() / folder).rglob("*") if p.suffix in kinds]
     assert {p.relative_to(repository()) for p in files} <= {Path("docs/ball.png")}
     assert all(p.stat().st_size < 400_000 for p in files)
+
+
+def test_the_material_of_the_readme_is_valid(tmp_path):
+    """Wrapped into a stage as it stands, it gives the validator nothing to find."""
+    from scratchwarp.stage.validation import validate
+
+    (block,) = re.findall(r"```usda\n(.*?)```", README.read_text(encoding="utf-8"), re.DOTALL)
+    stage = tmp_path / "stage.usda"
+    head = '#usda 1.0\n(\n    defaultPrim = "World"\n    metersPerUnit = 1\n    upAxis = "Y"\n)\n'
+    stage.write_text(f'{head}def Xform "World"\n{{\n{block}}}\n')
+    assert [str(finding) for finding in validate(stage)] == []

@@ -153,7 +153,7 @@ def test_explain(renderer, capsys):
     assert effects == {"shadows": {"enabled": False, "reason": "nothing can occlude", "prims": ["/World/Ball"]}}
 
 
-@pytest.mark.parametrize("command", ["render", "explain", "validate", "demo"])
+@pytest.mark.parametrize("command", ["render", "explain", "simulate", "validate", "view", "demo", "cache"])
 def test_help_has_examples(command, capsys):
     assert status(command, "--help") == 0
-    assert f"examples:\n  scratchwarp {command} " in capsys.readouterr().out
+    assert f"examples:\n  scratchwarp {command}" in capsys.readouterr().out
