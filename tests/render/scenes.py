@@ -1,7 +1,11 @@
 """Small scenes made without USD, shared by the tests of the renderer."""
 
+from dataclasses import replace
+
 import numpy as np
 
+import scratchwarp as sw
+from scratchwarp.plan.effects import EFFECTS
 from scratchwarp.scene import (
     Camera,
     DomeLight,
@@ -12,7 +16,25 @@ from scratchwarp.scene import (
     PreviewSurface,
     Profile,
     Scene,
+    ScratchSurface,
 )
+
+# Code for everything, so that the tests of this folder share a few kernels. ``test_effects`` shows that an effect which
+# nothing calls for changes no bit. Left out: what changes how lights are sampled, and what needs data of its own.
+EVERYTHING = {
+    name: True
+    for name in EFFECTS
+    if name.split(".")[0] in ("lights", "base", "scratches", "shadows", "lens", "indirect")
+    and name not in ("lights.multipliers", "scratches.curves")
+}
+
+
+def shoot(world, effects=None, **settings):
+    """The film of a scene, 32 x 32 box-filtered pixels and every effect's code compiled unless said otherwise."""
+    settings = {"width": 32, "height": 32, "spp": 16, "filter": "box", **settings}
+    return sw.render(
+        world, sw.make_plan(world, sw.Settings(effects=EVERYTHING if effects is None else effects, **settings))
+    )
 
 
 def sphere(rings=24, sides=48, radius=1.0, smooth=True, path="/ball"):
@@ -46,6 +68,31 @@ def plane(size=2.0, path="/floor", axis="z"):
     triangles = np.array([[0, 1, 2], [0, 2, 3]])
     st = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], float)
     return Mesh(path=path, points=points, triangles=triangles, uvs={"st": st[triangles]})
+
+
+def box(size=1.0, path="/box"):
+    """Cube of edge ``size`` about the origin, without uvs."""
+    points = (np.indices((2, 2, 2)).reshape(3, -1).T - 0.5) * size
+    quads = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
+    return Mesh(path=path, points=points, triangles=quads[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3))
+
+
+def cone(sides=40, path="/cone"):
+    """Closed cone about the y axis, height 1.6, radius 0.8, with u around it and facets for normals."""
+    u = np.arange(sides + 1) / sides
+    rim = np.stack([0.8 * np.sin(2 * np.pi * u), np.full_like(u, -0.8), 0.8 * np.cos(2 * np.pi * u)], -1)
+    points = np.concatenate([rim, [[0, 0.8, 0], [0, -0.8, 0]]])
+    k = np.arange(sides)
+    top, low = np.full(sides, sides + 1), np.full(sides, sides + 2)
+    triangles = np.concatenate([np.stack([k, k + 1, top], 1), np.stack([k + 1, k, low], 1)])
+    middle = u[:-1] + 0.5 / sides
+    st = np.stack([np.stack([u[:-1], u[1:], middle], 1), np.tile([0.0, 0.0, 1.0], (sides, 1))], -1)
+    return Mesh(path=path, points=points, triangles=triangles, uvs={"st": np.concatenate([st, st[:, [1, 0, 2]]])})
+
+
+def slotted(mesh, count):
+    """The mesh with its triangles dealt to ``count`` material slots, neighbours to different ones."""
+    return replace(mesh, slots=np.arange(len(mesh.triangles)) // 2 % count)
 
 
 def place(mesh=0, material=0, at=(0, 0, 0), path="/placed", light=-1, linear=None):
@@ -85,6 +132,11 @@ def scratched(surface=None, **fields):
 def white_metal(roughness=0.0):
     """A lossless mirror."""
     return PreviewSurface(diffuse_color=(1.0, 1.0, 1.0), metallic=1.0, roughness=roughness)
+
+
+def lambert(albedo=1.0):
+    """A diffuse surface."""
+    return ScratchSurface(base="diffuse", color=(albedo,) * 3)
 
 
 def scene(meshes, materials, lights, instances=None, cam=None, **fields):
