@@ -14,7 +14,6 @@ from scratchwarp import usd_schemas
 from scratchwarp.scene import StageError
 
 from .open import open_stage
-from .reading import Warnings
 from .validation_framework import KEYWORD, register_rules
 
 SEVERITY = {"Error": "error", "Warn": "warning"}
@@ -51,7 +50,7 @@ def validate(path: str | Path, core: bool = True) -> list[Finding]:
         RuntimeError: a stage was opened in this process before the schemas were registered.
     """
     usd_schemas.register()
-    return validate_stage(open_stage(path, Warnings()), core)
+    return validate_stage(open_stage(path), core)
 
 
 def validate_stage(stage: Usd.Stage, core: bool = True) -> list[Finding]:
@@ -67,7 +66,7 @@ def fix(path: str | Path) -> list[Finding]:
         StageError: the file is missing, is no USD, or cannot be written.
     """
     usd_schemas.register()
-    stage = open_stage(path, Warnings())
+    stage = open_stage(path)
     target, time = stage.GetEditTarget(), Usd.TimeCode.Default()
     fixed = []
     for error in run(stage, core=False):
