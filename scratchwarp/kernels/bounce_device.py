@@ -5,14 +5,14 @@ import warp as wp
 from ..lights.light_device import Light, LightArrays
 from ..lights.mesh_device import mesh_light_hit, span_mesh
 from ..optics.frames_device import Frame, frame_with_tangent, to_local, to_world
-from ..reflectance.base_device import Base, base_albedo, base_fresnel, base_sample
+from ..reflectance.base_device import Base, base_albedo, base_fresnel, base_pdf, base_sample
 from ..reflectance.profile_table_device import TableArrays, cone_direction, table_row, table_sample
 from ..scratches.curves_device import SegmentArrays
 from ..scratches.layer_device import LayerData
 from .geometry_device import Geometry, Surface
 from .key import KernelKey
 from .layers_device import make_gather
-from .lobe_device import Lobe, power_heuristic
+from .lobe_device import Lobe, mirrored_at, power_heuristic
 from .material_device import MaterialArrays, MaterialData
 
 wp.set_module_options({"enable_backward": False})
@@ -33,13 +33,6 @@ class Scatter:
 def largest(c: wp.vec3) -> float:
     """The largest channel."""
     return wp.max(wp.max(c[0], c[1]), c[2])
-
-
-@wp.func
-def above(direction: wp.vec3, ng: wp.vec3) -> wp.vec3:
-    """A direction that the shading normal sent below the facet, mirrored back above it; energy is kept."""
-    d = wp.dot(direction, ng)
-    return direction - 2.0 * wp.min(d, 0.0) * ng
 
 
 def make_bounce(key: KernelKey, rotated, emission_at):
@@ -135,13 +128,18 @@ def make_bounce(key: KernelKey, rotated, emission_at):
                 out.alive = 1
                 out.direction = to_world(lobe.frame, b.wi)
                 out.pdf = b.pdf
+                out.weight = b.weight * lobe.scale
                 if b.delta == 1:
                     out.pdf = -1.0
-                out.weight = b.weight * lobe.scale
+                else:
+                    folded = to_local(lobe.frame, mirrored_at(out.direction, s.ng))
+                    if folded[2] > 0.0:
+                        out.pdf += base_pdf(lobe.base, lobe.wo, folded, lobe.w_diffuse, lobe.w_specular)
         if out.alive == 1 and wp.dot(out.direction, s.ng) <= 0.0:
-            # light sampling finds nothing below the facet, so this way has to count in full
-            out.direction = above(out.direction, s.ng)
-            out.pdf = -1.0
+            out.direction = mirrored_at(out.direction, s.ng)
+            if lobe.scratch == 1:
+                # light sampling looks along the cone alone, so this way has to count in full
+                out.pdf = -1.0
         return out
 
     @wp.func

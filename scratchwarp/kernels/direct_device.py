@@ -24,7 +24,7 @@ from ..reflectance.profile_table_device import (
 )
 from .geometry_device import Geometry, interpolate_uv, intersect
 from .key import KernelKey
-from .lobe_device import Lobe, power_heuristic
+from .lobe_device import Lobe, mirrored_at, power_heuristic
 from .material_device import MaterialArrays
 
 PSI = wp.constant(0.5 * 3.14159265 / 180.0)  # half the support of one degree
@@ -97,18 +97,26 @@ def make_direct(key: KernelKey, transmittance):
         return result
 
     @wp.func
-    def on_base(lobe: Lobe, light: Light, ls: LightSample, wi: wp.vec3) -> wp.vec3:
+    def on_base(lobe: Lobe, light: Light, ls: LightSample, ng: wp.vec3) -> wp.vec3:
+        wi = to_local(lobe.frame, ls.wi)
         w_diffuse = lobe.w_diffuse
         w_specular = lobe.w_specular
         if wp.static(key.light_multipliers):
             w_diffuse *= light.diffuse
             w_specular *= light.specular
         terms = base_eval_pdf(lobe.base, lobe.wo, wi, w_diffuse, w_specular)
-        value = wp.cw_mul(terms.value, ls.radiance)
+        reflected = terms.value
+        density = terms.pdf
+        folded = to_local(lobe.frame, mirrored_at(ls.wi, ng))
+        if folded[2] > 0.0:
+            more = base_eval_pdf(lobe.base, lobe.wo, folded, w_diffuse, w_specular)
+            reflected += more.value
+            density += more.pdf
+        value = wp.cw_mul(reflected, ls.radiance)
         if ls.pdf > 0.0:
             weight = float(1.0)
             if wp.static(not key.light_multipliers):
-                weight = power_heuristic(ls.pdf, terms.pdf)
+                weight = power_heuristic(ls.pdf, density)
             value = value * (weight / ls.pdf)
         return value
 
@@ -142,9 +150,10 @@ def make_direct(key: KernelKey, transmittance):
         index: wp.uint32,
         dimension: int,
         seed: wp.uint32,
-    ) -> wp.vec3:
-        """Light sampling of every light; ``p`` is already off the surface."""
+    ) -> wp.vec4:
+        """Light sampling of every light, and in w the rays it took; ``p`` is already off the surface."""
         total = wp.vec3(0.0, 0.0, 0.0)
+        rays = float(0.0)
         for j in range(wp.static(len(models))):
             for i in range(starts[j], starts[j + 1]):
                 light = lights[i]
@@ -153,9 +162,11 @@ def make_direct(key: KernelKey, transmittance):
                     if lobe.scratch != 1:
                         ls = wp.static(models[j].sample)(light_arrays, light, p, u)
                         if ls.pdf != 0.0 and wp.dot(ls.wi, ng) > 0.0:
-                            value = on_base(lobe, light, ls, to_local(lobe.frame, ls.wi))
+                            value = on_base(lobe, light, ls, ng)
                             if wp.max(wp.max(value[0], value[1]), value[2]) > 0.0:
                                 total += wp.cw_mul(value, arrives(g, arrays, light, p, ls.wi, ls.distance))
+                                if wp.static(key.shadows):
+                                    rays += float(light.shadow)
                     if wp.static(key.scratches):
                         if lobe.scratch == 1:
                             if wp.static(finite[j]):
@@ -198,7 +209,10 @@ def make_direct(key: KernelKey, transmittance):
                                         value = value * light.specular
                                     if wp.max(wp.max(value[0], value[1]), value[2]) > 0.0 and wp.dot(w, ng) > 0.0:
                                         total += wp.cw_mul(value, arrives(g, arrays, light, p, w, far))
-        return total * lobe.scale
+                                        if wp.static(key.shadows):
+                                            rays += float(light.shadow)
+        total = total * lobe.scale
+        return wp.vec4(total[0], total[1], total[2], rays)
 
     @wp.func
     def seen(

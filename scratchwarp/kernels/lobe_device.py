@@ -44,6 +44,16 @@ def power_heuristic(a: float, b: float) -> float:
 
 
 @wp.func
+def mirrored_at(direction: wp.vec3, ng: wp.vec3) -> wp.vec3:
+    """The mirror image of a direction in the facet's plane.
+
+    A shading normal spreads a lobe below the facet. That part is folded back above it, so that no energy is lost at
+    silhouettes: a lobe f becomes f(w) + f(mirrored w), its density likewise, for w above the facet.
+    """
+    return direction - 2.0 * wp.dot(direction, ng) * ng
+
+
+@wp.func
 def luminance(c: wp.vec3) -> float:
     """Y of linear Rec.709."""
     return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]

@@ -220,7 +220,7 @@ def make_kernel(key: KernelKey):
                                 first_scratch = lobe.scratch
                             p = lifted(g, s)
                             instance = s.instance
-                            lit = direct(
+                            received = direct(
                                 g,
                                 arrays,
                                 tables,
@@ -236,8 +236,8 @@ def make_kernel(key: KernelKey):
                                 pair + wp.static(OWN_PAIRS),
                                 seed,
                             )
-                            rays += nlights
-                            lit = wp.cw_mul(throughput, lit)
+                            lit = wp.cw_mul(throughput, wp.vec3(received[0], received[1], received[2]))
+                            rays += int(received[3])
                             out = scatter(tables, lobe, s, u_base, u_more[1])
                             step = wp.cw_mul(throughput, out.weight)
                             if depth == 0:
@@ -271,7 +271,7 @@ def make_kernel(key: KernelKey):
                 color += found + lit
                 # light and glow that the camera sees directly belong to no lobe
                 part = lit + wp.where(entered > 0, 1.0, 0.0) * found
-                if first_scratch == 1:
+                if first_scratch > 0:
                     part_scratch += part
                 else:
                     part_base += part

@@ -4,6 +4,7 @@ Files:
     choice      EffectChoice, EffectPlan, TablePlan, LayerPlan: the result
     resolve     every setting decided
     effects     the effects and how each is decided; a new effect is one line there
+    cost        about what each effect costs
     layers      the scene's layers -> sublayers and the tables they share
     profiles    a ScratchProfile record -> a profile to simulate
     occlusion   whether anything can cast a shadow

@@ -11,12 +11,14 @@ from ..scene.checks import put
 
 @dataclass(frozen=True)
 class EffectChoice:
-    """One effect on or off; ``reason`` names what calls for it, ``prims`` the paths; ``forced`` by the user."""
+    """One effect on or off; ``reason`` names what calls for it, ``prims`` the paths; ``forced`` by the user; ``share``
+    of the rendering time, about (see ``cost``)."""
 
     enabled: bool
     reason: str
     prims: tuple[str, ...] = ()
     forced: bool = False
+    share: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,15 +81,16 @@ class EffectPlan:
         return self.effects[name].enabled
 
     def explain(self) -> str:
-        """The plan as a table: effect, on or off, why."""
+        """The plan as a table: effect, on or off, about what share of the rendering time, why."""
         width = max(len(n) for n in self.effects)
-        lines = [f"{'effect':<{width}}  state  why", f"{'-' * width}  -----  ---"]
+        lines = [f"{'effect':<{width}}  state  share  why", f"{'-' * width}  -----  -----  ---"]
         for name, choice in self.effects.items():
             state = ("on" if choice.enabled else "off") + ("!" if choice.forced else "")
             prims = (
                 f"  [{', '.join(choice.prims[:3])}{', ...' if len(choice.prims) > 3 else ''}]" if choice.prims else ""
             )
-            lines.append(f"{name:<{width}}  {state:<5}  {choice.reason}{prims}")
+            share = f"{100 * choice.share:.0f} %" if choice.share >= 0.005 else ""
+            lines.append(f"{name:<{width}}  {state:<5}  {share:>5}  {choice.reason}{prims}")
         if any(c.forced for c in self.effects.values()):
             lines.append("! forced by the user or the stage")
         lines += [f"{name}: {text}" for name, text in self.numbers.items()]

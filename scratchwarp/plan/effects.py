@@ -35,7 +35,7 @@ class Facts:
 
 
 def _answer(prims: list[str], on: str, off: str) -> Answer:
-    unique = tuple(dict.fromkeys(prims))
+    unique = tuple(dict.fromkeys(p or "(no material)" for p in prims))
     return bool(unique), on if unique else off, unique
 
 

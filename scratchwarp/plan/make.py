@@ -1,9 +1,12 @@
 """make_plan: walk the scene once and decide every effect."""
 
 import time
+from dataclasses import replace
 
+from ..lights.registry import MODELS
 from ..scene import Scene, Settings
 from .choice import EffectChoice, EffectPlan
+from .cost import shares
 from .effects import EFFECTS, Facts
 from .layers import plan_layers
 from .resolve import resolve
@@ -34,6 +37,9 @@ def make_plan(scene: Scene, settings: Settings | None = None) -> EffectPlan:
             reason = f"forced {'on' if forced[name] else 'off'}; by itself {'on' if enabled else 'off'}: {reason}"
             enabled = forced[name]
         effects[name] = EffectChoice(enabled, reason, prims, name in forced)
+    counts = {f"lights.{m.name}": sum(type(x) is r for x in scene.lights) for r, m in MODELS.items()}
+    by_cost = shares(effects, layers, counts, decided.max_depth or 1)
+    effects = {n: replace(c, share=by_cost.get(n, 0.0)) for n, c in effects.items()}
     waved = effects["diffraction"].prims
     warnings += tuple(f"{prim}: ScratchWaveAPI is rendered by geometric optics in this version" for prim in waved)
     x0, x1, y0, y1 = window
