@@ -4,7 +4,8 @@ Files, the way a table is made: ``profile`` the record, ``shapes`` named ones, `
 ``tracer_device`` the next hit, ``path_device`` a whole path, ``trace_kernels`` all rays of a column; ``reflectors``
 Fresnel as rows, ``energy_kernels`` and ``polarised_kernels`` what paths carry and where it lands; ``paths`` the host
 of both passes, ``launch`` threads; ``tracing`` columns and symmetries, ``balance`` (and its kernels) whole tables,
-``simulation`` the calls; ``theta`` models along the scratch; ``table`` the result, ``table_device`` and
+``simulation`` the calls; ``theta`` models along the scratch, ``theta_choice`` their
+errors; ``table`` the result, ``table_device`` and
 ``table_kernels`` its sampling; ``single_rays``, ``cache`` tables on disk.
 """
 
@@ -21,6 +22,8 @@ from scratchwarp.profiles.single_rays import Rays as Rays
 from scratchwarp.profiles.single_rays import trace as trace
 from scratchwarp.profiles.table import Table as Table
 from scratchwarp.profiles.theta import THETA_MODELS as THETA_MODELS
+from scratchwarp.profiles.theta_choice import choose_theta_model as choose_theta_model
+from scratchwarp.profiles.theta_choice import theta_model_errors as theta_model_errors
 from scratchwarp.profiles.tracing import SAMPLERS as SAMPLERS
 from scratchwarp.profiles.tracing import Traced as Traced
 from scratchwarp.profiles.tracing import trace_paths as trace_paths

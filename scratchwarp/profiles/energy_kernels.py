@@ -17,6 +17,7 @@ class Deposit:
     """Bins that the energy of each column goes to."""
 
     half: wp.array(dtype=float)  # [lines] half the range of incidence [rad] that a line stands for
+    offset: wp.array(dtype=float)  # [lines] from the line's incidence to the middle of that range
     product: wp.array(dtype=float, ndim=3)  # [lines, rays, layers] reflectance along each path
     energy: wp.array(dtype=float, ndim=3)  # [columns, 3 + layers, bins]: by 1, 2, 3 and more bounces, then the layers
     lost: wp.array(dtype=float)  # [columns]
@@ -68,6 +69,12 @@ def share_below(edge: float, low: float, high: float, smear: float) -> float:
 
 
 @wp.func
+def centre(lines: Lines, deposit: Deposit, line: int, ray: int) -> float:
+    """Exit angle for the middle of the range of incidence."""
+    return lines.phi_o[line, ray] + wp.clamp(lines.rate_phi[line, ray] * deposit.offset[line], -0.5, 0.5)
+
+
+@wp.func
 def spread(
     deposit: Deposit,
     lines: Lines,
@@ -84,8 +91,8 @@ def spread(
     if bounces < 0:
         deposit.lost[column] += energy
     else:
-        a = (lines.phi_o[line, left] + _HALF_PI) / lines.bin
-        b = (lines.phi_o[line, right] + _HALF_PI) / lines.bin
+        a = (centre(lines, deposit, line, left) + _HALF_PI) / lines.bin
+        b = (centre(lines, deposit, line, right) + _HALF_PI) / lines.bin
         low = wp.min(a, b)
         high = wp.max(a, b)
         rate = 0.5 * (wp.abs(lines.rate_phi[line, left]) + wp.abs(lines.rate_phi[line, right]))

@@ -30,6 +30,7 @@ class Beams:
 
     phi: np.ndarray
     half: np.ndarray
+    offset: np.ndarray
     low: np.ndarray
     high: np.ndarray
     lines_each: int
@@ -71,6 +72,7 @@ class Paths:
             launch_tiles(energies.reflect_along, line_count, inputs, self.threads)
         deposit = energies.Deposit()
         deposit.half = _floats(self.beams.half)
+        deposit.offset = _floats(self.beams.offset)
         deposit.product = product
         deposit.energy = wp.zeros((columns, 3 + layers, self.bins), dtype=float, device="cpu")
         deposit.lost = wp.zeros(columns, dtype=float, device="cpu")

@@ -63,16 +63,10 @@ class Table:
         if self.normal is None or self.gamma is None or self.slices is None or self.slice_cosines is None:
             return np.array(self.mirror)
         model = self.theta_model if model is None else model
-        mu = theta_models.nodes(model)
         mirror = self.mirror if self.normal.ndim == 2 else self.mirror[..., None]
         if model == "gamma":
             return theta_models.power_law(mirror, self.normal, self.gamma, theta)
-        chosen = [int(np.argmin(np.abs(self.slice_cosines - m))) for m in mu]
-        if np.abs(self.slice_cosines[chosen] - mu).max() > 1e-6:
-            raise ValueError(
-                f"model {model!r} needs a table simulated with theta_model={model!r}, this one has {self.theta_model!r}"
-            )
-        return theta_models.between_slices(mirror, self.slices[chosen], mu, theta)
+        return theta_models.between_slices(model, mirror, self.slices, self.slice_cosines, theta)
 
     def sample(self, phi_o: Any, u: Any) -> tuple[np.ndarray, np.ndarray]:
         """``(phi_i, pdf)``: directions of incidence [rad] drawn for ``phi_o`` [rad] by the inverse CDF at ``u`` in

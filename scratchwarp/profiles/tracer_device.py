@@ -175,8 +175,7 @@ def march(outline: Outline, o: wp.vec2, d: wp.vec2, k: int, t: float):
                 s0 = wp.where(rightward, near, far)
                 s1 = wp.where(rightward, far, near)
                 if above:
-                    # rounding may put the near end on the wrong side as well; it is then the place where the ray goes
-                    # in
+                    # rounding may put the near end on the wrong side too; it is then where the ray goes in
                     s0 = wp.min(s0, 0.0)
                     s1 = wp.max(s1, 1.0e-30)
                 where = meets(outline, j, p, d, s0, s1)

@@ -117,12 +117,13 @@ def columns_of(columns: np.ndarray, resolution: int, incidence: str, lines_each:
     left = columns * width - 0.5 * np.pi
     low, high = np.sin(left), np.sin(left + width)
     if incidence == "centre":
-        return Beams(left + 0.5 * width, np.zeros(len(columns)), low, low, 1)
+        return Beams(left + 0.5 * width, np.zeros(len(columns)), np.zeros(len(columns)), low, low, 1)
     share = np.arange(lines_each + 1) / lines_each
     edges = np.arcsin(np.clip(low[:, None] + (high - low)[:, None] * share, -1.0, 1.0))
-    middle = 0.5 * (edges[:, 1:] + edges[:, :-1])
-    half = 0.5 * (edges[:, 1:] - edges[:, :-1])
-    return Beams(middle.ravel(), half.ravel(), low, high, lines_each)
+    left, right = edges[:, :-1].ravel(), edges[:, 1:].ravel()
+    # the cosine-weighted mean, so that the outermost bins are not met at too grazing an angle
+    mean = (right * np.sin(right) + np.cos(right) - left * np.sin(left) - np.cos(left)) / (np.sin(right) - np.sin(left))
+    return Beams(mean, 0.5 * (right - left), 0.5 * (right + left) - mean, low, high, lines_each)
 
 
 def layers_of(
