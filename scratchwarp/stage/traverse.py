@@ -98,7 +98,9 @@ def _instancer(
     prototypes.update(t for t in targets if not t.HasPrefix(path))
     chosen = np.asarray(instancer.GetProtoIndicesAttr().Get(reading.time) or [], np.int64)
     mask = np.asarray(instancer.ComputeMaskAtTime(reading.time), bool)
-    matrices = np.asarray(instancer.ComputeInstanceTransformsAtTime(reading.time, reading.time), np.float64)
+    # With the prototypes' own transforms USD gives up on any index that is out of range; they are applied below.
+    own = UsdGeom.PointInstancer.ExcludeProtoXform
+    matrices = np.asarray(instancer.ComputeInstanceTransformsAtTime(reading.time, reading.time, own), np.float64)
     matrices = matrices.reshape(-1, 4, 4).transpose(0, 2, 1)
     numbers = np.arange(len(chosen))[mask] if len(mask) else np.arange(len(chosen))
     if len(matrices) != len(numbers):
@@ -115,7 +117,8 @@ def _instancer(
             continue
 
         def relative(prim: Usd.Prim, root: Usd.Prim = root) -> np.ndarray:
-            return np.array(reading.xforms.ComputeRelativeTransform(prim, root)[0]).T
+            within_root = np.array(reading.xforms.ComputeRelativeTransform(prim, root)[0]).T
+            return np.array(reading.xforms.GetLocalTransformation(root)[0]).T @ within_root
 
         parts = list(_walk(reading, root, relative, purpose, _PROTOTYPE, prototypes, (*within, path)))
         for i in np.flatnonzero(chosen[numbers] == which):
