@@ -42,6 +42,13 @@ def make_plan(scene: Scene, settings: Settings | None = None) -> EffectPlan:
     effects = {n: replace(c, share=by_cost.get(n, 0.0)) for n, c in effects.items()}
     waved = effects["diffraction"].prims
     warnings += tuple(f"{prim}: ScratchWaveAPI is rendered by geometric optics in this version" for prim in waved)
+    warnings += tuple(
+        f"{light.path}: its shadow link is not honoured, everything casts its shadow"
+        for light in scene.lights
+        if light.shadow_linked is not None
+    )
+    if decided.max_error is not None:
+        warnings += (f"max_error {decided.max_error:g} is not honoured in this version; the samples are {decided.spp}",)
     x0, x1, y0, y1 = window
     numbers = {
         "image": f"{size[0]} x {size[1]} pixels, {x1 - x0} x {y1 - y0} rendered, {decided.spp} samples each, "

@@ -13,14 +13,16 @@ def is_convex(mesh: Mesh) -> bool:
 
     A closed connected surface without boundary on which every edge is convex is convex (Tietze, Nakajima).
     """
-    points, index = np.unique(mesh.points, axis=0, return_inverse=True)
-    triangles = index.ravel()[mesh.triangles]
+    size = float(np.ptp(mesh.points, axis=0).max()) if len(mesh.points) else 0.0
+    if size == 0.0:
+        return True
+    _, kept, index = np.unique((mesh.points / (FLAT * size)).round(), axis=0, return_index=True, return_inverse=True)
+    points, triangles = mesh.points[kept], index.ravel()[mesh.triangles]
     triangles = triangles[(triangles != np.roll(triangles, 1, axis=1)).all(1)]
     if not len(triangles):
         return True
     a, b, c = (points[triangles[:, k]] for k in range(3))
     normals = np.cross(b - a, c - a)
-    size = float(np.ptp(points, axis=0).max())
     length = np.linalg.norm(normals, axis=1, keepdims=True)
     normals = np.divide(normals, length, out=np.zeros_like(normals), where=length > 0)
     first = normals[length.argmax()]
