@@ -22,9 +22,17 @@ def bound_materials(prims: Sequence[Usd.Prim], purposes: Sequence[str] = PURPOSE
         for i, material, binding in zip(left, materials, bindings, strict=True):
             # USD falls back to the all-purpose binding by itself; further purposes must have their turn before it.
             last = purpose == "" or purpose == asked[-1]
-            if material and (last or UsdShade.MaterialBindingAPI.GetMaterialPurpose(binding) == purpose):
+            if material and (last or _purpose(binding) == purpose):
                 found[i] = material.GetPrim()
     return found
+
+
+def _purpose(binding: Usd.Relationship) -> str:
+    """Purpose in a name such as material:binding[:purpose] or material:binding:collection[:purpose]:name."""
+    _, _, *rest = binding.SplitName()
+    if rest and rest[0] == "collection":
+        return rest[1] if len(rest) > 2 else ""
+    return rest[0] if rest else ""
 
 
 def slot_prims(prim: Usd.Prim) -> list[Usd.Prim]:

@@ -78,6 +78,9 @@ def _value(reading: Reading, shader: UsdShade.Shader, name: str, default: Any, t
     given = shader.GetInput(name)
     sources = given.GetValueProducingAttributes() if given else []
     if not sources:
+        if given and given.GetRawConnectedSourcePaths():
+            target = given.GetRawConnectedSourcePaths()[0]
+            reading.warn(shader.GetPath(), f"inputs:{name} is connected to {target}, which does not exist")
         return default
     source = sources[0]
     if UsdShade.Utils.GetType(source.GetName()) != UsdShade.AttributeType.Output:
