@@ -22,7 +22,8 @@ def read_shape(reading: Reading, prim: Usd.Prim) -> Mesh | None:
     """Read an intrinsic shape in object space; None, with a warning, when its size is not positive."""
     sizes = {name: reading.number(prim, name, 1.0) for name in _SIZES if prim.GetAttribute(name)}
     points, triangles, normals = BUILDERS[str(prim.GetTypeName())](sizes)
-    if not len(triangles) or any(size < 0 for size in sizes.values()):
+    may_vanish = ("radiusTop", "radiusBottom")
+    if not len(triangles) or any(size < 0 or (size == 0 and name not in may_vanish) for name, size in sizes.items()):
         given = ", ".join(f"{name} {size:g}" for name, size in sizes.items())
         reading.warn(prim.GetPath(), f"its size is not positive ({given}); it is left out")
         return None
