@@ -3,10 +3,12 @@
 Files (host):
     key             KernelKey: what a kernel is specialised by
     assemble        scene, plan and tables -> key and arguments
+    stamp           a number that changes with the device code
     geometry        instances -> world triangles and their hierarchy
     material        materials and layers -> device records
 Files (device):
     render_device   make_kernel(key): the kernel itself
+    world_device    LightSet, ScratchSet
     camera_device, film_device, geometry_device, material_device: structs and what is read from them
     base_at_device  a material at a point
     layers_device   coverage of all layers under a footprint

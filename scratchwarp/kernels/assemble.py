@@ -16,6 +16,7 @@ from ..scratches import KINDS, curves
 from . import geometry, material
 from .camera_device import CameraData
 from .key import KernelKey
+from .world_device import LightSet, ScratchSet
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +101,6 @@ def assemble(scene: Scene, plan: EffectPlan, tables: Sequence[Any], device: str 
         if name in order:
             flat[number] = starts[order[name]] + slot
     table = np.concatenate(rows) if len(rows) and starts[-1] else np.zeros(1, Light.numpy_dtype())
-    light_array = wp.array(table, dtype=Light, device=device)
     links = np.ones((max(len(scene.lights), 1), max(len(scene.instances), 1)), np.uint8)
     for number, record in enumerate(scene.lights):
         if record.linked is not None:
@@ -116,16 +116,12 @@ def assemble(scene: Scene, plan: EffectPlan, tables: Sequence[Any], device: str 
             for own in plan.layers
         ]
     stuff = material.pack(scene, layers or [[] for _ in scene.materials], device)
-    inputs = (
-        camera_data(scene, plan),
-        shape.arrays,
-        stuff.arrays,
-        stuff.layers,
-        strokes,
-        profile_table.pack(tables, device),
-        packed.arrays,
-        light_array,
-        wp.array(starts, dtype=int, device=device),
-        wp.array(links, dtype=wp.uint8, device=device),
-    )
+    light_set, scratch_set = LightSet(), ScratchSet()
+    light_set.lights = wp.array(table, dtype=Light, device=device)
+    light_set.starts = wp.array(starts, dtype=int, device=device)
+    light_set.links = wp.array(links, dtype=wp.uint8, device=device)
+    light_set.arrays = packed.arrays
+    scratch_set.layers, scratch_set.segments = stuff.layers, strokes
+    scratch_set.tables = profile_table.pack(tables, device)
+    inputs = (camera_data(scene, plan), shape.arrays, stuff.arrays, scratch_set, light_set)
     return Assembled(key, inputs, (shape, stuff, packed, sets), packed.warnings)

@@ -2,18 +2,16 @@
 
 import warp as wp
 
-from ..lights.light_device import Light, LightArrays
 from ..lights.mesh_device import mesh_light_hit, span_mesh
 from ..optics.frames_device import Frame, frame_with_tangent, to_local, to_world
 from ..reflectance.base_device import Base, base_albedo, base_fresnel, base_pdf, base_sample
 from ..reflectance.profile_table_device import TableArrays, cone_direction, table_row, table_sample
-from ..scratches.curves_device import SegmentArrays
-from ..scratches.layer_device import LayerData
 from .geometry_device import Geometry, Surface
 from .key import KernelKey
 from .layers_device import make_gather
 from .lobe_device import Lobe, mirrored_at, power_heuristic
 from .material_device import MaterialArrays, MaterialData
+from .world_device import LightSet, ScratchSet
 
 wp.set_module_options({"enable_backward": False})
 
@@ -42,9 +40,7 @@ def make_bounce(key: KernelKey, rotated, emission_at):
     @wp.func
     def choose(
         g: Geometry,
-        layers: wp.array(dtype=LayerData),
-        strokes: SegmentArrays,
-        tables: TableArrays,
+        scratches: ScratchSet,
         m: MaterialData,
         s: Surface,
         frame: Frame,
@@ -63,7 +59,7 @@ def make_bounce(key: KernelKey, rotated, emission_at):
         lobe.w_specular = 1.0
         if wp.static(key.scratches):
             if m.layers > 0:
-                laid = gather(g, layers, strokes, m, s, frame, step_x, step_y, u_lobe[1], u_more[1])
+                laid = gather(g, scratches, m, s, frame, step_x, step_y, u_lobe[1], u_more[1])
                 lobe.w_specular = 1.0 - laid.covered
                 lobe.w_diffuse = 1.0 - laid.covered + laid.kept
                 if laid.chosen >= 0:
@@ -72,7 +68,7 @@ def make_bounce(key: KernelKey, rotated, emission_at):
                     of_base += kept * largest(base.diffuse)
                     p = laid.weight / wp.max(laid.weight + of_base, 1.0e-20)
                     if u_lobe[0] < p:
-                        layer = layers[laid.chosen]
+                        layer = scratches.layers[laid.chosen]
                         lobe.scale = laid.weight / (p * layer.weight)
                         lobe.scratch = 1
                         lobe.frame = frame_with_tangent(frame.n, laid.direction)
@@ -90,7 +86,7 @@ def make_bounce(key: KernelKey, rotated, emission_at):
                         if lobe.scratch == 1:
                             lobe.table = layer.table
                             phi = wp.atan2(lobe.wo[1], wp.max(lobe.wo[2], 0.0))
-                            lobe.row = table_row(tables, phi, laid.xi)
+                            lobe.row = table_row(scratches.tables, phi, laid.xi)
                             lobe.sin_theta = -wp.clamp(lobe.wo[0], -1.0, 1.0)
                     else:
                         lobe.scale = 1.0 / (1.0 - p)
@@ -152,8 +148,7 @@ def make_bounce(key: KernelKey, rotated, emission_at):
 
     @wp.func
     def mesh_glow(
-        light_arrays: LightArrays,
-        lights: wp.array(dtype=Light),
+        lights: LightSet,
         s: Surface,
         origin: wp.vec3,
         direction: wp.vec3,
@@ -162,7 +157,7 @@ def make_bounce(key: KernelKey, rotated, emission_at):
         pdf: float,
         phi: float,
     ) -> wp.vec3:
-        hit = mesh_light_hit(light_arrays, lights[s.light], origin, direction, distance, s.ng)
+        hit = mesh_light_hit(lights.arrays, lights.lights[s.light], origin, direction, distance, s.ng)
         weight = float(1.0)
         if hit.distance >= 0.0 and pdf > 0.0:
             other = hit.pdf
@@ -170,7 +165,7 @@ def make_bounce(key: KernelKey, rotated, emission_at):
                 if lobe.scratch == 1:
                     other = 0.0
                     f = lobe.frame
-                    span = span_mesh(light_arrays, lights[s.light], origin, f.x, f.y, f.n, lobe.sin_theta)
+                    span = span_mesh(lights.arrays, lights.lights[s.light], origin, f.x, f.y, f.n, lobe.sin_theta)
                     if span.ok == 1 and phi >= span.lo and phi <= span.hi:
                         other = 1.0 / wp.max(span.hi - span.lo, 1.0e-7)
             if other > 0.0:
@@ -180,8 +175,7 @@ def make_bounce(key: KernelKey, rotated, emission_at):
     @wp.func
     def glow(
         arrays: MaterialArrays,
-        light_arrays: LightArrays,
-        lights: wp.array(dtype=Light),
+        lights: LightSet,
         m: MaterialData,
         s: Surface,
         origin: wp.vec3,
@@ -197,7 +191,7 @@ def make_bounce(key: KernelKey, rotated, emission_at):
             total += emission_at(arrays, m, s.uv)
         if wp.static(key.mesh_lights):
             if s.light >= 0 and s.outside == 1:
-                total += mesh_glow(light_arrays, lights, s, origin, direction, distance, lobe, pdf, phi)
+                total += mesh_glow(lights, s, origin, direction, distance, lobe, pdf, phi)
         return total
 
     return choose, scatter, glow, pass_through

@@ -9,7 +9,7 @@ kernel f(psi) = (1 - (psi / Psi)^2)^2 of section 5.2, normalised: L(psi) = 3 E /
 import warp as wp
 
 from ..lights.cap_device import span_cap
-from ..lights.light_device import Light, LightArrays, LightSample, Span
+from ..lights.light_device import Light, LightSample, Span
 from ..lights.mesh_device import mesh_light_hit
 from ..lights.registry import MODELS
 from ..optics.frames_device import to_local
@@ -26,6 +26,7 @@ from .geometry_device import Geometry, interpolate_uv, intersect
 from .key import KernelKey
 from .lobe_device import Lobe, mirrored_at, power_heuristic
 from .material_device import MaterialArrays
+from .world_device import LightSet
 
 PSI = wp.constant(0.5 * 3.14159265 / 180.0)  # half the support of one degree
 MOST_LAYERS_OF_GLASS = 32
@@ -74,10 +75,10 @@ def make_direct(key: KernelKey, transmittance):
     of_mesh = [model.geometry for model in models]
 
     @wp.func
-    def linked(links: wp.array2d(dtype=wp.uint8), light: Light, instance: int) -> bool:
+    def linked(lights: LightSet, light: Light, instance: int) -> bool:
         if wp.static(key.light_links):
             if light.link >= 0 and instance >= 0:
-                return links[light.link, instance] != wp.uint8(0)
+                return lights.links[light.link, instance] != wp.uint8(0)
         return True
 
     @wp.func
@@ -121,7 +122,7 @@ def make_direct(key: KernelKey, transmittance):
         return value
 
     @wp.func
-    def cone_span(light_arrays: LightArrays, kind: int, light: Light, p: wp.vec3, lobe: Lobe, toward: wp.vec3) -> Span:
+    def cone_span(lights: LightSet, kind: int, light: Light, p: wp.vec3, lobe: Lobe, toward: wp.vec3) -> Span:
         span = Span()
         if light.delta == 1:
             span = span_cap(toward, PSI, lobe.frame.x, lobe.frame.y, lobe.frame.n, lobe.sin_theta)
@@ -130,7 +131,7 @@ def make_direct(key: KernelKey, transmittance):
                 if wp.static(finite[j]):
                     if kind == j:
                         span = wp.static(models[j].span)(
-                            light_arrays, light, p, lobe.frame.x, lobe.frame.y, lobe.frame.n, lobe.sin_theta
+                            lights.arrays, light, p, lobe.frame.x, lobe.frame.y, lobe.frame.n, lobe.sin_theta
                         )
         return span
 
@@ -139,10 +140,7 @@ def make_direct(key: KernelKey, transmittance):
         g: Geometry,
         arrays: MaterialArrays,
         tables: TableArrays,
-        light_arrays: LightArrays,
-        lights: wp.array(dtype=Light),
-        starts: wp.array(dtype=int),
-        links: wp.array2d(dtype=wp.uint8),
+        lights: LightSet,
         p: wp.vec3,
         ng: wp.vec3,
         instance: int,
@@ -155,12 +153,12 @@ def make_direct(key: KernelKey, transmittance):
         total = wp.vec3(0.0, 0.0, 0.0)
         rays = float(0.0)
         for j in range(wp.static(len(models))):
-            for i in range(starts[j], starts[j + 1]):
-                light = lights[i]
-                if linked(links, light, instance):
+            for i in range(lights.starts[j], lights.starts[j + 1]):
+                light = lights.lights[i]
+                if linked(lights, light, instance):
                     u = sobol_2d(index, dimension + i, seed)
                     if lobe.scratch != 1:
-                        ls = wp.static(models[j].sample)(light_arrays, light, p, u)
+                        ls = wp.static(models[j].sample)(lights.arrays, light, p, u)
                         if ls.pdf != 0.0 and wp.dot(ls.wi, ng) > 0.0:
                             value = on_base(lobe, light, ls, ng)
                             if wp.max(wp.max(value[0], value[1]), value[2]) > 0.0:
@@ -174,11 +172,11 @@ def make_direct(key: KernelKey, transmittance):
                                 e = wp.vec3(0.0, 0.0, 0.0)
                                 far = float(0.0)
                                 if light.delta == 1:
-                                    ls = wp.static(models[j].sample)(light_arrays, light, p, u)
+                                    ls = wp.static(models[j].sample)(lights.arrays, light, p, u)
                                     toward = ls.wi
                                     e = ls.radiance
                                     far = ls.distance
-                                span = cone_span(light_arrays, j, light, p, lobe, toward)
+                                span = cone_span(lights, j, light, p, lobe, toward)
                                 if span.ok == 1 and span.hi > span.lo:
                                     phi = span.lo + u[0] * (span.hi - span.lo)
                                     w = cone_direction(lobe.frame.x, lobe.frame.y, lobe.frame.n, lobe.sin_theta, phi)
@@ -192,12 +190,12 @@ def make_direct(key: KernelKey, transmittance):
                                         value = wp.cw_mul(value, e) * (3.0 * f * f / (wp.pi * PSI * PSI))
                                         w = toward
                                     else:
-                                        hit = wp.static(models[j].hit)(light_arrays, light, p, w)
+                                        hit = wp.static(models[j].hit)(lights.arrays, light, p, w)
                                         if wp.static(of_mesh[j]):
                                             met = intersect(g, p, w, 1.0e10)
                                             if met.face >= 0:
                                                 if met.light == i and met.outside == 1:
-                                                    hit = mesh_light_hit(light_arrays, light, p, w, met.t, met.ng)
+                                                    hit = mesh_light_hit(lights.arrays, light, p, w, met.t, met.ng)
                                         far = hit.distance
                                         weight = float(0.0)
                                         if hit.distance >= 0.0:
@@ -216,10 +214,7 @@ def make_direct(key: KernelKey, transmittance):
 
     @wp.func
     def seen(
-        light_arrays: LightArrays,
-        lights: wp.array(dtype=Light),
-        starts: wp.array(dtype=int),
-        links: wp.array2d(dtype=wp.uint8),
+        lights: LightSet,
         p: wp.vec3,
         w: wp.vec3,
         gone: float,
@@ -239,13 +234,13 @@ def make_direct(key: KernelKey, transmittance):
         met = float(0.0)
         for j in range(wp.static(len(models))):
             if wp.static(not of_mesh[j]):
-                for i in range(starts[j], starts[j + 1]):
-                    light = lights[i]
-                    wanted = linked(links, light, instance)
+                for i in range(lights.starts[j], lights.starts[j + 1]):
+                    light = lights.lights[i]
+                    wanted = linked(lights, light, instance)
                     if depth == 0 and light.camera_visible == 0:
                         wanted = False
                     if wanted:
-                        hit = wp.static(models[j].hit)(light_arrays, light, p, w)
+                        hit = wp.static(models[j].hit)(lights.arrays, light, p, w)
                         if hit.distance >= gone and hit.distance < reach:
                             weight = float(1.0)
                             if pdf > 0.0:
@@ -254,7 +249,7 @@ def make_direct(key: KernelKey, transmittance):
                                     if lobe.scratch == 1:
                                         other = 0.0
                                         if wp.static(finite[j]):
-                                            span = cone_span(light_arrays, j, light, p, lobe, w)
+                                            span = cone_span(lights, j, light, p, lobe, w)
                                             if span.ok == 1 and span.hi > span.lo:
                                                 if phi >= span.lo and phi <= span.hi:
                                                     other = 1.0 / (span.hi - span.lo)

@@ -4,12 +4,13 @@ import warp as wp
 
 from ..optics.frames_device import Frame
 from ..scratches import device_function, kind_number
-from ..scratches.curves_device import SegmentArrays, curves
+from ..scratches.curves_device import curves
 from ..scratches.layer_device import LayerData, LayerHit
 from .geometry_device import Geometry, Surface, uv_motion
 from .key import KernelKey
 from .lobe_device import Layers
 from .material_device import MaterialData
+from .world_device import ScratchSet
 
 # Layers that cover less than this are culled (Raymond 2016 section 6.1).
 SMALLEST_COVERAGE = wp.constant(1.0e-6)
@@ -33,8 +34,7 @@ def make_gather(key: KernelKey):
     @wp.func
     def gather(
         g: Geometry,
-        layers: wp.array(dtype=LayerData),
-        strokes: SegmentArrays,
+        scratches: ScratchSet,
         m: MaterialData,
         s: Surface,
         frame: Frame,
@@ -61,7 +61,7 @@ def make_gather(key: KernelKey):
         result = Layers()
         result.chosen = -1
         for k in range(m.layers):
-            layer = layers[m.first_layer + k]
+            layer = scratches.layers[m.first_layer + k]
             scale = wp.vec2d(wp.float64(1.0), wp.float64(1.0))
             if layer.uv_space == 0:
                 scale = g.pattern_scale[s.instance]
@@ -79,7 +79,7 @@ def make_gather(key: KernelKey):
             stroke = wp.vec3(0.0, 0.0, 0.0)
             if wp.static("curves" in key.distributions):
                 if layer.kind == wp.static(strokes_number) and layer.bvh != wp.uint64(0):
-                    drawn = curves(strokes, layer, s.p, outward, s.uv, du, dv, step_x, step_y, jx, jy, phase)
+                    drawn = curves(scratches.segments, layer, s.p, outward, s.uv, du, dv, step_x, step_y, jx, jy, phase)
                     hit.alpha = drawn.alpha
                     stroke = drawn.direction
             if hit.alpha > SMALLEST_COVERAGE:

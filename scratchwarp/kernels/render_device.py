@@ -4,15 +4,11 @@ from functools import lru_cache
 
 import warp as wp
 
-from ..lights.light_device import Light, LightArrays
 from ..optics.filters_device import filter_offset_blackman_harris, filter_offset_box, filter_offset_gaussian
 from ..optics.frames_device import to_local
 from ..optics.hash_device import pixel_seed
 from ..optics.sobol_device import sobol_2d
 from ..reflectance.base_device import base_albedo
-from ..reflectance.profile_table_device import TableArrays
-from ..scratches.curves_device import SegmentArrays
-from ..scratches.layer_device import LayerData
 from .base_at_device import make_base_at
 from .bounce_device import make_bounce
 from .camera_device import CameraData, footprint_step, lens_point, orthographic_ray, perspective_ray
@@ -31,6 +27,7 @@ from .key import KernelKey
 from .lobe_device import Lobe, luminance
 from .material_device import MaterialArrays
 from .stamp import stamp
+from .world_device import LightSet, ScratchSet
 
 FILTERS = {
     "box": filter_offset_box,
@@ -59,13 +56,8 @@ def make_kernel(key: KernelKey):
         camera: CameraData,
         g: Geometry,
         arrays: MaterialArrays,
-        layers: wp.array(dtype=LayerData),
-        strokes: SegmentArrays,
-        tables: TableArrays,
-        light_arrays: LightArrays,
-        lights: wp.array(dtype=Light),
-        starts: wp.array(dtype=int),
-        links: wp.array2d(dtype=wp.uint8),
+        scratches: ScratchSet,
+        lights: LightSet,
         film: FilmArrays,
     ):
         tid = wp.tid()
@@ -76,7 +68,7 @@ def make_kernel(key: KernelKey):
         px = window.x0 + column
         py = window.y0 + line
         seed = pixel_seed(px, py, window.seed)
-        nlights = starts[wp.static(len(key.lights))]
+        nlights = lights.starts[wp.static(len(key.lights))]
 
         for sample in range(window.first, window.first + window.count):
             index = wp.uint32(sample)
@@ -118,10 +110,7 @@ def make_kernel(key: KernelKey):
                         # nothing but lights can be found: look for geometry only where there is one to hide
                         last = 1
                         known = seen(
-                            light_arrays,
                             lights,
-                            starts,
-                            links,
                             origin,
                             direction,
                             gone,
@@ -137,10 +126,7 @@ def make_kernel(key: KernelKey):
                     rays += 1
                     limit = wp.where(s.face >= 0, gone + s.t, 1.0e30)
                     known = seen(
-                        light_arrays,
                         lights,
-                        starts,
-                        links,
                         origin,
                         direction,
                         gone,
@@ -178,9 +164,7 @@ def make_kernel(key: KernelKey):
                         if depth == 0:
                             alpha = 1.0
                         traveled += gone + s.t
-                        glowing = glow(
-                            arrays, light_arrays, lights, m, s, origin, direction, gone + s.t, lobe, pdf, phi
-                        )
+                        glowing = glow(arrays, lights, m, s, origin, direction, gone + s.t, lobe, pdf, phi)
                         found += wp.cw_mul(throughput, glowing)
                         if depth < window.max_depth:
                             tangent = wp.vec3(0.0, 0.0, 0.0)
@@ -202,9 +186,7 @@ def make_kernel(key: KernelKey):
                             step_y = footprint_step(step_y, direction, s.ng)
                             lobe = choose(
                                 g,
-                                layers,
-                                strokes,
-                                tables,
+                                scratches,
                                 m,
                                 s,
                                 frame,
@@ -223,11 +205,8 @@ def make_kernel(key: KernelKey):
                             received = direct(
                                 g,
                                 arrays,
-                                tables,
-                                light_arrays,
+                                scratches.tables,
                                 lights,
-                                starts,
-                                links,
                                 p,
                                 s.ng,
                                 instance,
@@ -238,7 +217,7 @@ def make_kernel(key: KernelKey):
                             )
                             lit = wp.cw_mul(throughput, wp.vec3(received[0], received[1], received[2]))
                             rays += int(received[3])
-                            out = scatter(tables, lobe, s, u_base, u_more[1])
+                            out = scatter(scratches.tables, lobe, s, u_base, u_more[1])
                             step = wp.cw_mul(throughput, out.weight)
                             if depth == 0:
                                 film.normal[line, column] = film.normal[line, column] + frame.n

@@ -1,0 +1,29 @@
+"""What a render kernel reads, one struct a concept: the lights and the scratches of a scene."""
+
+import warp as wp
+
+from ..lights.light_device import Light, LightArrays
+from ..reflectance.profile_table_device import TableArrays
+from ..scratches.curves_device import SegmentArrays
+from ..scratches.layer_device import LayerData
+
+wp.set_module_options({"enable_backward": False})
+
+
+@wp.struct
+class LightSet:
+    """All lights, sorted by kind: those of kind j are ``lights[starts[j] .. starts[j + 1]]``."""
+
+    lights: wp.array(dtype=Light)
+    starts: wp.array(dtype=int)
+    links: wp.array2d(dtype=wp.uint8)  # [light, instance]: 1 where the light lights the instance
+    arrays: LightArrays
+
+
+@wp.struct
+class ScratchSet:
+    """All sublayers, the segments of explicit ones, and the profile tables they reflect by."""
+
+    layers: wp.array(dtype=LayerData)
+    segments: SegmentArrays
+    tables: TableArrays
