@@ -13,6 +13,7 @@ from scratchwarp.profiles.cache import Store as Store
 from scratchwarp.profiles.cache import read_table as read_table
 from scratchwarp.profiles.cache import store as store
 from scratchwarp.profiles.cache import write_table as write_table
+from scratchwarp.profiles.drawing import picture as picture
 from scratchwarp.profiles.profile import Profile as Profile
 from scratchwarp.profiles.shapes import shape as shape
 from scratchwarp.profiles.shapes import shape_names as shape_names

@@ -9,6 +9,7 @@ import warp as wp
 wp.set_module_options({"enable_backward": False})
 
 _PI = wp.constant(3.14159265358979)
+_HAIR = wp.constant(1.0e-6)
 _HALF_PI = wp.constant(1.5707963267948966)
 
 
@@ -59,4 +60,7 @@ def table_sample(cdf: wp.array(dtype=float, ndim=2), phi_o: float, u: float):
     first = table_edge(low, bins)
     last = table_edge(low + 1, bins)
     sine = wp.clamp(first + between * (last - first), -1.0, 1.0)
-    return wp.asin(sine), share * wp.sqrt(wp.max(1.0 - sine * sine, 0.0)) / (last - first)
+    # a hair inside the bin, so that rounding never moves a sample to a neighbour with another density
+    left = _PI * (float(low) / float(bins) - 0.5)
+    phi_i = wp.clamp(wp.asin(sine), left + _HAIR, left + _PI / float(bins) - _HAIR)
+    return phi_i, share * wp.cos(phi_i) / (last - first)

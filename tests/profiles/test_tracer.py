@@ -93,7 +93,8 @@ def test_semicircle_matches_its_closed_form():
     # arcs differ from the circle by h^4 or so, which moves the place where one more reflection begins
     assert same.mean() > 0.9995
     few = same & (count <= 6)
-    # quadratic arcs over 0.7 degrees have normals within (h / 2)^3 / 6 = 4e-8 rad of the circle's; float32 adds 1e-7 rad
+    # quadratic arcs over 0.7 degrees have normals within (h / 2)^3 / 6 = 4e-8 rad of the circle's; float32 adds 1e-7
+    # rad
     # a reflection, and distances near the rim are known to 1e-7 / cos(eta)
     error = np.abs(rays.phi_o - exit_angle)[few] * np.cos(eta[few])
     assert error.max() < 2e-5
