@@ -35,11 +35,11 @@ def ball(path: Path | str, detail: float = 1.0) -> Path:
     steel = metal(stage, "ball", "silver", 0.09)
     usd.layer(
         steel, "hairlines", usd.profile(steel, "soft", shape="round", rim=0.2), order=1, distribution="worley",
-        patterns=12, width=24.0, depth=4.0, length=6000.0, coverage=0.1, angleSpread=360.0, curvature=20.0, seed=3,
+        patterns=16, width=24.0, depth=4.0, length=6000.0, coverage=0.12, angleSpread=360.0, curvature=40.0, seed=3,
     )
     usd.layer(
         steel, "marks", usd.profile(steel, "sharp", shape="vGroove", rim=0.3), order=2, distribution="random",
-        width=55.0, depth=14.0, length=9000.0, coverage=0.012, angleSpread=360.0, curvature=12.0, seed=8,
+        width=55.0, depth=14.0, length=9000.0, coverage=0.012, angleSpread=360.0, curvature=30.0, seed=8,
         widthVariation=0.4, depthVariation=0.4,
     )
     body = shapes.sphere(RADIUS, (0.0, 0.45, 1.0), rings, 2 * rings)
@@ -70,18 +70,22 @@ def tiles(stage: Usd.Stage, detail: float) -> None:
     layers: list[tuple[str, str, float, dict[str, Any]]] = [
         ("worley", "iron", 0.12, {"width": 30.0, "depth": 5.0, "length": 8000.0, "coverage": 0.2, "patterns": 8}),
         ("spiral", "brass", 0.06, {"width": 220.0, "depth": 34.0, "pitch": 640.0}),
-        ("linear", "aluminium", 0.06, {"width": 90.0, "depth": 14.0, "pitch": 260.0, "angle": 30.0}),
-        ("crosshatch", "iron", 0.1, {"width": 120.0, "depth": 26.0, "pitch": 900.0, "angle": 15.0, "crossAngle": 60.0}),
+        ("linear", "aluminium", 0.06, {"width": 240.0, "depth": 40.0, "pitch": 700.0, "angle": 30.0}),
+        ("crosshatch", "iron", 0.1, {"width": 240.0, "depth": 40.0, "pitch": 1100.0, "angle": -22.0}),
         ("random", "aluminium", 0.08, {"width": 60.0, "depth": 14.0, "length": 14000.0, "coverage": 0.1}),
         ("concentric", "copper", 0.06, {"width": 160.0, "depth": 24.0, "pitch": 420.0}),
         ("curves", "gold", 0.06, {"width": 60.0, "depth": 16.0}),
     ]
-    directions = {"worley": {"angleSpread": 360.0}, "random": {"angleSpread": 70.0, "curvature": 15.0}}
+    directions = {
+        "worley": {"angleSpread": 360.0},
+        "crosshatch": {"crossAngle": 63.0},
+        "random": {"angleSpread": 70.0, "curvature": 15.0},
+    }
     for i, (distribution, kind, roughness, values) in enumerate(layers):
         turn, step = (i - 1) * np.pi / 3, (i > 0) * (REACH * np.sqrt(3) + GAP)
         at = np.round((step * np.cos(turn), 0.0, -step * np.sin(turn)), 5).tolist()
         owner = metal(stage, f"{distribution}Tile", kind, roughness)
-        shape = "vGroove" if distribution in ("crosshatch", "random") else "round"
+        shape = "vGroove" if distribution == "random" else "round"
         cut = usd.profile(owner, "cut", shape=shape, rim=0.15)
         engraved = rosette(stage, at, detail) if distribution == "curves" else None
         values = values | directions.get(distribution, {})
@@ -110,9 +114,10 @@ def surroundings(stage: Usd.Stage, detail: float) -> None:
     slate = usd.material(stage, "slate", diffuseColor=(0.035, 0.037, 0.042), roughness=0.45, ior=1.5)
     segments = max(12, int(64 * detail))
     usd.mesh(stage, "floor", shapes.lathe([[(60.0, 0.0), (30.0, 0.0), (0.0, 0.0)]], segments), slate, (0.0, -0.6, 0.0))
-    usd.rect_light(stage, "key", (-16.0, 26.0, 12.0), (0.0, 0.0, 0.0), (14.0, 14.0), 9.0, (1.0, 0.96, 0.9))
-    usd.rect_light(stage, "rim", (14.0, 16.0, -24.0), (0.0, 0.0, 0.0), (24.0, 8.0), 7.0, (0.85, 0.92, 1.0))
-    usd.sphere_light(stage, "bulb", (9.0, 17.0, 15.0), 0.35, 2600.0)
-    usd.sphere_light(stage, "spark", (-7.0, 20.0, -13.0), 0.3, 2600.0, (1.0, 0.85, 0.7))
-    usd.distant_light(stage, "sky", (-0.35, -1.0, -0.45), 4.0, 0.5)
-    usd.dome_light(stage, "ambient", 0.12, (0.75, 0.85, 1.0))
+    usd.rect_light(stage, "key", (-24.0, 22.0, 10.0), (0.0, 0.0, 0.0), (12.0, 12.0), 9.0, (1.0, 0.96, 0.9))
+    usd.rect_light(stage, "side", (30.0, 12.0, 2.0), (0.0, 0.0, 0.0), (8.0, 16.0), 6.0, (0.85, 0.92, 1.0))
+    usd.sphere_light(stage, "bulb", (5.0, 26.0, 12.0), 0.35, 1500.0)
+    usd.sphere_light(stage, "spark", (-16.0, 18.0, -7.0), 0.3, 1500.0, (1.0, 0.85, 0.7))
+    usd.sphere_light(stage, "glint", (21.4, 23.0, -1.9), 0.3, 1500.0)
+    usd.distant_light(stage, "sky", (0.6, -1.0, -0.1), 3.0, 0.4)
+    usd.dome_light(stage, "ambient", 0.35, (0.75, 0.85, 1.0))

@@ -58,13 +58,13 @@ def kettle(path: Path | str, detail: float = 1.0) -> Path:
     arch = shapes.smooth([(-x, y, z) for x, y, z in half] + [(0.0, 19.8, 0.0)] + half[::-1], 2 * n)
     usd.mesh(stage, "handle", shapes.tube(arch, 0.62, max(10, int(40 * detail))), bakelite)
     studio(stage, detail)
-    usd.camera(stage, (11.0, 30.0, 70.0), (2.2, 9.2, 0.0))
+    usd.camera(stage, (12.0, 30.0, 70.0), (3.0, 9.2, 0.0))
     usd.settings(stage)
     return usd.save(stage, path, "A brushed kettle: circular scratches.")
 
 
 def studio(stage: Usd.Stage, detail: float) -> None:
-    """A backdrop, two soft panels, two small bulbs, a weak sun and a dim dome."""
+    """A backdrop, four soft panels, two small bulbs, a weak sun and a dim dome."""
     paper = usd.material(stage, "paper", diffuseColor=(0.22, 0.2, 0.19), roughness=0.9)
     n = max(6, int(24 * detail))
     bend = np.linspace(0, np.pi / 2, n)
@@ -73,7 +73,9 @@ def studio(stage: Usd.Stage, detail: float) -> None:
     usd.mesh(stage, "backdrop", shapes.extruded(backdrop, 260.0), paper)
     usd.rect_light(stage, "key", (-45.0, 50.0, 40.0), (0.0, 8.0, 0.0), (36.0, 36.0), 8.0, (1.0, 0.96, 0.9))
     usd.rect_light(stage, "side", (58.0, 22.0, 16.0), (0.0, 8.0, 0.0), (10.0, 50.0), 7.0, (0.86, 0.93, 1.0))
+    usd.rect_light(stage, "rimLeft", (-46.0, 22.0, -26.0), (0.0, 8.0, 0.0), (14.0, 44.0), 3.0, (0.86, 0.93, 1.0))
+    usd.rect_light(stage, "rimRight", (46.0, 22.0, -26.0), (0.0, 8.0, 0.0), (14.0, 44.0), 3.0, (1.0, 0.96, 0.9))
     usd.sphere_light(stage, "bulb", (22.0, 48.0, 46.0), 0.8, 2400.0)
     usd.sphere_light(stage, "spark", (-30.0, 30.0, 50.0), 0.5, 2400.0, (1.0, 0.85, 0.7))
     usd.distant_light(stage, "sun", (-0.4, -1.0, -0.5), 2.0, 0.4)
-    usd.dome_light(stage, "ambient", 0.15, (0.8, 0.88, 1.0))
+    usd.dome_light(stage, "ambient", 0.22, (0.8, 0.88, 1.0))

@@ -23,6 +23,6 @@ def plain(path: Path | str, detail: float = 1.0) -> Path:
     for name, owner, x, radius in surfaces:
         usd.mesh(stage, name, shapes.sphere(radius, (0.0, 0.4, 1.0), rings, 2 * rings), owner, (x, radius, 0.0))
     studio(stage, detail)
-    usd.camera(stage, (6.0, 24.0, 66.0), (0.5, 6.0, 0.0))
+    usd.camera(stage, (7.0, 28.0, 84.0), (0.5, 5.2, 0.0))
     usd.settings(stage)
     return usd.save(stage, path, "A plain stage without scratches.")

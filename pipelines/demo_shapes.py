@@ -26,6 +26,11 @@ class Shape:
         """The shape, shifted."""
         return Shape(self.points + np.array([x, y, z]), self.normals, self.uv, self.counts, self.indices)
 
+    def z_up(self) -> "Shape":
+        """The shape for a stage with +Z up: what was +Y is +Z, what was -Z is +Y."""
+        turn = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+        return Shape(self.points @ turn, self.normals @ turn, self.uv, self.counts, self.indices)
+
 
 def joined(shapes: Sequence[Shape]) -> Shape:
     """One shape of several, without welding."""

@@ -3,12 +3,14 @@
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 from pxr import Usd, UsdGeom, UsdRender, UsdShade, UsdValidation
 
 from scratchwarp import usd_schemas
 from scratchwarp.pipelines import author_demo
 from scratchwarp.scene.layer import DISTRIBUTIONS
+from scratchwarp.stage import read
 
 DETAIL = 0.1
 
@@ -128,3 +130,38 @@ def test_it_runs_on_its_own(tmp_path):
     done = subprocess.run(command, capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr
     assert len(done.stdout.split()) == 4
+
+
+def test_stages_read_without_a_warning(path):
+    """Every layer, light and curve arrives; micro-structure in micrometres, scene lengths in metres."""
+    scene = read(path)
+    assert scene.warnings == ()
+    stage = Usd.Stage.Open(str(path))
+    assert sum(len(material.layers) for material in scene.materials) == len(list(layers(stage)))
+    assert len(scene.lights) == len(stage.GetPrimAtPath("/World/lights").GetChildren())
+    assert scene.options.resolution == (640, 480)
+    low, high = scene.bounds()
+    assert 0.1 < np.linalg.norm(high - low) < 10.0
+
+
+def test_the_rosette_lies_on_its_tile(stages):
+    """Object-space scratches are within a micrometre of the top of the tile that they are engraved in."""
+    scene = read(stages["ball"])
+    (curves,) = scene.curves
+    (tile,) = [i for i in scene.instances if i.path.endswith("curvesTile")]
+    points = scene.meshes[tile.mesh].points @ tile.transform[:3, :3].T + tile.transform[:3, 3]
+    assert np.abs(curves.points[:, 1] - points[:, 1].max()).max() < 1e-6
+    assert np.linalg.norm((curves.points - points.mean(0))[:, [0, 2]], axis=1).max() < 0.028
+
+
+def test_the_camera_sees_the_whole_subject(stages):
+    """Corners of the main object's bounding box project inside the picture."""
+    subjects = {"ball": "ball", "kettle": "body", "panel": "door", "plain": "plastic"}
+    for name, subject in subjects.items():
+        scene = read(stages[name])
+        (found,) = [i for i in scene.instances if i.path == f"/World/geo/{subject}"]
+        points = scene.meshes[found.mesh].points @ found.transform[:3, :3].T + found.transform[:3, 3]
+        eye = (points - scene.camera.transform[:3, 3]) @ scene.camera.transform[:3, :3]
+        left, right, bottom, top = scene.camera.window(640, 480)
+        x, y = eye[:, 0] / -eye[:, 2], eye[:, 1] / -eye[:, 2]
+        assert left < x.min() and x.max() < right and bottom < y.min() and y.max() < top, name

@@ -148,3 +148,14 @@ def test_no_display_says_so(monkeypatch):
     monkeypatch.setattr("ctypes.util.find_library", lambda name: None)
     with pytest.raises(OSError, match="libEGL"), display.drawing(True):
         pass
+
+
+def test_a_stage_is_shown_from_file_to_picture(tmp_path, monkeypatch):
+    """The entry that the command line uses, with a rendered image."""
+    from scratchwarp.pipelines import author_demo
+
+    monkeypatch.delenv("DISPLAY", raising=False)
+    stage = author_demo.author(tmp_path, 0.1, ["plain"])[0]
+    viewers.view(stage, tmp_path / "look.png", width=48, spp=1, size=(320, 240))
+    pixels = pyvista.read(tmp_path / "look.png").active_scalars.reshape(240, 320, -1)[120:, 160:, :3]
+    assert pixels.std() > 10  # pyvista's rows run upwards: the upper right quarter is the image
