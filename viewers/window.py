@@ -40,6 +40,8 @@ def view(
         OSError: no display, no off-screen OpenGL, or the picture cannot be written.
         ValueError: the stage is at fault.
     """
+    if screenshot is not None:
+        check_writable(Path(screenshot))
     show(sw.read(str(stage_path), frame=frame, camera=camera), screenshot, width=width, spp=spp, size=size, page=page)
 
 
@@ -53,6 +55,8 @@ def show(
     page: int = 0,
 ) -> None:
     """As ``view`` for a scene that is read."""
+    if screenshot is not None:
+        check_writable(Path(screenshot))
     pv = pyvista()
     with drawing(screenshot is not None):
         plotter = pv.Plotter(shape=(2, 2), off_screen=screenshot is not None, window_size=list(size), border=False)
@@ -68,12 +72,16 @@ def show(
             plotter.deep_clean()
 
 
-def write(plotter: Any, path: Path) -> None:
-    """Write what the plotter shows, whole or not at all."""
+def check_writable(path: Path) -> None:
+    """Say what is wrong with ``path`` before anything is read or rendered: ValueError or OSError."""
     if path.suffix.lower() not in (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff"):
         raise ValueError(f"{path}: a screenshot ends in .png, .jpg, .bmp or .tif")
     if not path.parent.is_dir():
         raise OSError(f"{path}: the folder {path.parent} does not exist")
+
+
+def write(plotter: Any, path: Path) -> None:
+    """Write what the plotter shows, whole or not at all."""
     part = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")
     try:
         plotter.screenshot(str(part))

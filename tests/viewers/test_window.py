@@ -51,10 +51,19 @@ def test_nothing_is_left_when_the_window_closes(make_scene, layers, no_render, t
 
     monkeypatch.setattr(pyvista, "Plotter", plotter)
     window.show(make_scene(layers), tmp_path / "a.png", size=(64, 48))
-    with pytest.raises(OSError, match="no/such"):
-        window.show(make_scene(layers), tmp_path / "no/such/a.png", size=(64, 48))
+    monkeypatch.setattr(profiles, "add", lambda *args: 1 / 0)
+    with pytest.raises(ZeroDivisionError):
+        window.show(make_scene(layers), tmp_path / "b.png", size=(64, 48))
     gc.collect()
     assert len(seen) == 2 and [ref() for ref in seen] == [None, None]
+
+
+@pytest.mark.parametrize(("name", "error"), [("no/such/a.png", OSError), ("a.foo", ValueError)])
+def test_a_bad_file_name_is_told_before_anything_is_read(tmp_path, name, error):
+    """The stage does not exist either, but the message is about the picture."""
+    with pytest.raises(error, match=name):
+        viewers.view(tmp_path / "nothing.usda", tmp_path / name)
+    assert not list(tmp_path.iterdir())
 
 
 def test_keys_do_what_the_help_says(make_scene, make_layer, no_render):
