@@ -233,8 +233,8 @@ def parser() -> argparse.ArgumentParser:
 
     made = command("demo", "author the demo stages and render each to EXR and PNG")
     made.add_argument("out", metavar="OUT_DIR", help="folder for stages and images; made when missing")
-    made.add_argument("--imageWidth", "-w", type=int, metavar="PIXELS", help="[as the stages say]")
-    made.add_argument("--spp", type=int, help="samples a pixel [as the stages say]")
+    made.add_argument("--imageWidth", "-w", type=int, default=480, metavar="PIXELS", help="[480]")
+    made.add_argument("--spp", type=int, default=8, help="samples a pixel [8]")
     made.add_argument("--threads", type=int, help="worker threads [all cores]")
 
     made = command("cache", "say what is kept on disk between runs, or clear it")

@@ -97,13 +97,15 @@ def spread(
         high = wp.max(a, b)
         rate = 0.5 * (wp.abs(lines.rate_phi[line, left]) + wp.abs(lines.rate_phi[line, right]))
         smear = wp.min(rate * deposit.half[line], 0.5) / lines.bin
-        narrowest = _NARROWEST
-        if smear > 0.0:
-            narrowest = wp.max(narrowest, 0.03 * smear)
-        if high - low < narrowest:
-            middle = 0.5 * (low + high)
-            low = middle - 0.5 * narrowest
-            high = middle + 0.5 * narrowest
+        middle = 0.5 * (low + high)
+        if high - low < 0.03 * smear:
+            # a single direction of exit, blurred by the range of incidence alone
+            low = middle - smear
+            high = middle + smear
+            smear = 0.0
+        if high - low < _NARROWEST:
+            low = middle - 0.5 * _NARROWEST
+            high = middle + 0.5 * _NARROWEST
         order = wp.min(bounces, 3) - 1
         first = wp.clamp(int(wp.floor(low - smear)), 0, bins - 1)
         last = wp.clamp(int(wp.floor(high + smear)), first, bins - 1)

@@ -156,8 +156,11 @@ def sample_kernel(height_field: bool) -> Any:
             x = u
             if stratified != 0:
                 x = (float(ray) + u) / float(count)
-                v = v / float(count) + offset + 0.6180339887 * float(ray % 65536)
-                v = v - wp.floor(v)
+                # the golden sequence, stepped so that float32 stays fine: every part of the bin meets every strip
+                offset += 0.6180339887
+                offset -= wp.floor(offset)
+                v = offset + (v - 0.5) / float(count)
+                v -= wp.floor(v)
             phi = lines.phi[line]
             if high[line] > low[line]:
                 phi = wp.asin(wp.clamp(low[line] + (high[line] - low[line]) * v, -1.0, 1.0))

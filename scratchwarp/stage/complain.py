@@ -21,10 +21,12 @@ def complain(
             reading.path,
             f"metersPerUnit is not authored; {reading.metres:g} is used, and the size of scratches depends on it",
         )
+    seen = set()
     for instance in instances:
-        mesh = meshes[instance.mesh]
-        for index in set(instance.materials):
-            _material(reading, instance.path, mesh, materials[index])
+        for index in instance.materials:
+            if (instance.mesh, index) not in seen:
+                seen.add((instance.mesh, index))
+                _material(reading, instance.path, meshes[instance.mesh], materials[index])
 
 
 def _material(reading: Reading, path: str, mesh: Mesh, material: Material) -> None:

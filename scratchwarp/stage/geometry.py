@@ -32,15 +32,15 @@ class Geometry:
 
     def bounds(self) -> tuple[np.ndarray, np.ndarray] | None:
         """Lower and upper corner of everything in world space [scene units]; None where there is nothing."""
-        boxes = [_box(mesh) for mesh in self.meshes]
-        corners = []
-        for placed, index in self.placements:
-            eight = np.stack(np.meshgrid(*boxes[index].T, indexing="ij"), axis=-1).reshape(-1, 3)
-            corners.append(eight @ placed.world[:3, :3].T + placed.world[:3, 3])
-        if not corners:
+        if not self.placements:
             return None
-        every = np.concatenate(corners)
-        return every.min(0), every.max(0)
+        corners = np.array(
+            [np.stack(np.meshgrid(*_box(m).T, indexing="ij"), axis=-1).reshape(-1, 3) for m in self.meshes]
+        )
+        worlds = np.array([placed.world for placed, _ in self.placements])
+        every = np.einsum("pij,pcj->pci", worlds[:, :3, :3], corners[[i for _, i in self.placements]])
+        every += worlds[:, None, :3, 3]
+        return every.min((0, 1)), every.max((0, 1))
 
 
 def _box(mesh: Mesh) -> np.ndarray:

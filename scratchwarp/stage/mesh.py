@@ -49,7 +49,7 @@ def read_mesh(reading: Reading, prim: Usd.Prim) -> Mesh | None:
         reading.warn(path, "no face of the mesh has an area; it is left out")
         return None
     positions = cut.corners
-    if reading.value(prim, "orientation") == UsdGeom.Tokens.leftHanded:
+    if reading.value(prim, "orientation", "rightHanded") == UsdGeom.Tokens.leftHanded:
         positions = positions[:, ::-1]
     corners = Corners(positions, indices[positions], cut.faces, len(indices), len(points), len(counts))
 
@@ -117,7 +117,7 @@ def _faces(reading: Reading, mesh: UsdGeom.Mesh, counts: np.ndarray) -> np.ndarr
 
 def _normals(reading: Reading, mesh: UsdGeom.Mesh, points: np.ndarray, corners: Corners) -> np.ndarray | None:
     """Authored normals of a polygonal mesh; smooth ones of a subdivision cage; None: the facets' own."""
-    if reading.value(mesh.GetPrim(), "subdivisionScheme") != UsdGeom.Tokens.none:
+    if reading.value(mesh.GetPrim(), "subdivisionScheme", "catmullClark") != UsdGeom.Tokens.none:
         reading.warn(mesh.GetPath(), SUBDIVIDED)
         return smooth(points, corners)
     primvar = UsdGeom.PrimvarsAPI(mesh).GetPrimvar("normals")

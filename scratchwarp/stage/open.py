@@ -26,6 +26,15 @@ def gathered_diagnostics(path: str | Path, warn: Warnings) -> Iterator[None]:
         del delegate
 
 
+@contextmanager
+def usd_errors(path: str | Path) -> Iterator[None]:
+    """An error that USD raises meanwhile becomes a StageError about ``path``."""
+    try:
+        yield
+    except Tf.ErrorException as error:
+        raise StageError(f"{path}: USD gives up on it ({_first_error(error)})") from None
+
+
 def open_stage(
     path: str | Path,
     session_layer: str | Path | None = None,
@@ -42,14 +51,12 @@ def open_stage(
     """
     root = _layer(path)
     session = Sdf.Layer.CreateAnonymous("session") if session_layer is None else _layer(session_layer)
-    try:
+    with usd_errors(path):
         if mask is None:
             stage = Usd.Stage.Open(root, session)
         else:
             stage = Usd.Stage.OpenMasked(root, session, _mask([*_paths(mask), *(k for k in keep if k.startswith("/"))]))
             stage.ExpandPopulationMask()
-    except Tf.ErrorException as error:
-        raise StageError(f"{path}: cannot be opened as a stage ({_first_error(error)})") from None
     if not stage.GetPseudoRoot().GetAllChildren():
         wanted = "no prim matches the mask" if mask else "the stage has no prims"
         raise StageError(f"{path}: {wanted}; there is nothing to render")

@@ -34,16 +34,17 @@ def place_instances(
     reading: Reading, geometry: Geometry, origin: np.ndarray, materials: Materials, purposes: Sequence[str]
 ) -> list[Instance]:
     """One Instance for each placement; StageError on a transform that is not finite."""
+    for placed, _ in geometry.placements:
+        check_finite(reading, placed)
     prims = {str(p.prim.GetPath()): p.prim for p, _ in geometry.placements}
     slots = {path: slot_prims(prim) for path, prim in prims.items()}
     every: list[Usd.Prim] = [prim for found in slots.values() for prim in found]
     bound = iter(bound_materials(every, purposes))
     indices = {path: tuple(materials.index(next(bound)) for _ in found) for path, found in slots.items()}
+    transforms = np.array([to_metres(reading, placed.world, origin) for placed, _ in geometry.placements])
+    ranks = _ranks(transforms.reshape(-1, 4, 4)[:, :3, :3])
     instances = []
-    for placed, mesh in geometry.placements:
-        check_finite(reading, placed)
-        transform = to_metres(reading, placed.world, origin)
-        rank = _rank(transform[:3, :3])
+    for (placed, mesh), transform, rank in zip(geometry.placements, transforms, ranks, strict=True):
         if rank < 2:
             reading.warn(placed.path, "its transform has a scale of 0; it is left out")
             continue
@@ -53,13 +54,13 @@ def place_instances(
     return instances
 
 
-def _rank(linear: np.ndarray) -> int:
-    """Dimension of what a matrix [3, 3] maps space to."""
-    sizes = lengths(linear.T)
-    if abs(np.linalg.det(linear)) > 1e-9 * sizes.prod():
-        return 3
-    scales = np.linalg.svd(linear, compute_uv=False)
-    return int((scales > 1e-9 * scales[0]).sum())
+def _ranks(linear: np.ndarray) -> np.ndarray:
+    """Dimension of what matrices [n, 3, 3] map space to."""
+    ranks = np.full(len(linear), 3)
+    doubtful = np.abs(np.linalg.det(linear)) <= 1e-9 * lengths(linear.transpose(0, 2, 1)).prod(1)
+    scales = np.linalg.svd(linear[doubtful], compute_uv=False)
+    ranks[doubtful] = (scales > 1e-9 * scales[:, :1]).sum(1)
+    return ranks
 
 
 def _baked(geometry: Geometry, index: int, transform: np.ndarray) -> tuple[np.ndarray, int]:

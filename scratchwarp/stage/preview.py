@@ -8,7 +8,7 @@ from pxr import Usd, UsdShade
 from scratchwarp.scene import PreviewSurface, TextureInput
 
 from .color import color
-from .reading import Reading
+from .reading import Reading, fits
 from .texture import Textures
 from .texture_input import read_texture_input
 
@@ -86,6 +86,9 @@ def _value(reading: Reading, shader: UsdShade.Shader, name: str, default: Any, t
     if UsdShade.Utils.GetType(source.GetName()) != UsdShade.AttributeType.Output:
         got = source.Get(reading.time)
         if got is None:
+            return default
+        if not fits(got, default):
+            reading.warn(source.GetPath(), f"holds {got!r}, which is of the wrong type; {default} is used")
             return default
         return color(reading, source, np.array(got, np.float64)) if name in _COLORS else got
     node = UsdShade.Shader(source.GetPrim())

@@ -64,7 +64,13 @@ def spread(
     if got is None:
         return None
     values = np.asarray(got)
-    values = values.reshape(len(values), -1)[:, :width]
+    if values.dtype.kind not in "fiu":
+        reading.warn(attribute.GetPath(), "holds no numbers; it is ignored")
+        return None
+    if values.ndim < 2:  # one value, or an array of numbers
+        alone = values.ndim == 0 or type(got).__name__.startswith("Vec")
+        values = values.reshape(1, -1) if alone else values.reshape(-1, 1)
+    values = values[:, :width]
     element, wanted = corners.lookup(interpolation)
     given = len(values) if indices is None else len(indices)
     fault = ""

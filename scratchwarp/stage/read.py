@@ -16,7 +16,7 @@ from .curves import CurveSets
 from .geometry import Geometry, read_geometry
 from .illuminate import read_lights
 from .material import Materials
-from .open import gathered_diagnostics, metres_per_unit, open_stage
+from .open import gathered_diagnostics, metres_per_unit, open_stage, usd_errors
 from .options import StageSettings, read_settings
 from .place import place_instances
 from .reading import Reading, TextureLoader, Warnings
@@ -62,7 +62,7 @@ def read(
         raise StageError(f"purposes name {', '.join(unknown)}; known are {', '.join(ALL_PURPOSES)}")
     if frame is not None and not np.isfinite(frame):
         raise StageError(f"frame is {frame}; expected a time code")
-    with gathered_diagnostics(path, warnings):
+    with gathered_diagnostics(path, warnings), usd_errors(path):
         stage = open_stage(path, session_layer, mask, [k for k in (camera, render_settings) if k])
         reading = Reading(
             stage=stage,

@@ -2,10 +2,13 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from numbers import Real
 from typing import Any
 
 import numpy as np
-from pxr import Usd, UsdGeom
+from pxr import Tf, Usd, UsdGeom
+
+from scratchwarp.scene import StageError
 
 TextureLoader = Callable[[str, str], np.ndarray]
 """(path, colour space) -> float32 [h, w, 4], row 0 at the top, linear Rec.709 or raw."""
@@ -61,17 +64,28 @@ class Reading:
         object.__setattr__(self, "xforms", UsdGeom.XformCache(self.time))
 
     def world(self, prim: Usd.Prim) -> np.ndarray:
-        """Object to world in scene units, float64 [4, 4], column vectors."""
-        return np.array(self.xforms.GetLocalToWorldTransform(prim)).T
+        """Object to world in scene units, float64 [4, 4], column vectors; StageError on xformOps that USD refuses."""
+        try:
+            return np.array(self.xforms.GetLocalToWorldTransform(prim)).T
+        except Tf.ErrorException:
+            raise StageError(f"{self.path}: {prim.GetPath()} has xformOps that USD cannot evaluate") from None
 
     def value(self, prim: Usd.Prim, name: str, otherwise: Any = None) -> Any:
-        """The attribute's value at this time; where it has none (blocked) the schema's fallback, else ``otherwise``."""
+        """The attribute's value at this time; where it has none (blocked) the schema's fallback, else ``otherwise``.
+
+        A value of another type than those (USD lets any be authored) counts as none, with a warning.
+        """
         attribute = prim.GetAttribute(name)
         got = attribute.Get(self.time) if attribute else None
-        if got is None:
-            definition = prim.GetPrimDefinition().GetAttributeDefinition(name)
-            got = definition.GetFallbackValue() if definition else None
-        return otherwise if got is None else got
+        if got is not None and fits(got, otherwise) and otherwise is not None:
+            return got
+        definition = prim.GetPrimDefinition().GetAttributeDefinition(name)
+        like = definition.GetFallbackValue() if definition else None
+        like = otherwise if like is None else like
+        if got is None or fits(got, like):
+            return like if got is None else got
+        self.warn(attribute.GetPath(), f"holds {got!r}, which is of the wrong type; {like!r} is used")
+        return like
 
     def number(self, prim: Usd.Prim, name: str, otherwise: float = 0.0) -> float:
         """The same for a number: one that is not finite gives ``otherwise``, with a warning."""
@@ -80,6 +94,21 @@ class Reading:
             self.warn(prim.GetPath(), f"{name} is {got}; {otherwise:g} is used")
             return otherwise
         return got
+
+
+def fits(value: Any, like: Any) -> bool:
+    """Whether a value can stand where ``like`` does: numbers for numbers, text for text, tuples for tuples as long."""
+    if like is None:
+        return True
+    if isinstance(like, Real):
+        return isinstance(value, Real)
+    if isinstance(like, str):
+        return isinstance(value, str)
+    if isinstance(like, tuple) or type(like).__name__.startswith("Vec"):
+        return not isinstance(value, str) and hasattr(value, "__len__") and len(value) == len(like)
+    if hasattr(like, "__len__"):
+        return hasattr(value, "__len__") and not isinstance(value, str)
+    return isinstance(value, type(like))
 
 
 def shared_path(prim: Usd.Prim) -> str:

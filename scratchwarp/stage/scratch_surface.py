@@ -6,7 +6,7 @@ from pxr import Usd, UsdShade
 from scratchwarp.scene import ScratchSurface, StageError
 
 from .color import color
-from .reading import Reading
+from .reading import Reading, fits
 
 _ALUMINIUM_ETA = (1.3456, 0.9652, 0.6172)
 _ALUMINIUM_K = (7.4746, 6.3995, 5.3031)
@@ -26,6 +26,9 @@ def read_scratch_surface(reading: Reading, prim: Usd.Prim) -> ScratchSurface:
             reading.warn(given.GetAttr().GetPath(), "inputs of ScratchSurface take no textures; its default is used")
             return otherwise
         got = sources[0].Get(reading.time)
+        if got is not None and not fits(got, otherwise):
+            reading.warn(sources[0].GetPath(), f"holds {got!r}, which is of the wrong type; {otherwise} is used")
+            return otherwise
         return otherwise if got is None else got
 
     tint = UsdShade.Shader(prim).GetInput("color")

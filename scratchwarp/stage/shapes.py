@@ -30,7 +30,7 @@ def read_shape(reading: Reading, prim: Usd.Prim) -> Mesh | None:
     turn = _TURNED.get(str(reading.value(prim, "axis", "Z")), np.eye(3))
     points = points @ turn.T
     normals = None if normals is None else normals @ turn.T
-    if reading.value(prim, "orientation") == UsdGeom.Tokens.leftHanded:
+    if reading.value(prim, "orientation", "rightHanded") == UsdGeom.Tokens.leftHanded:
         triangles = triangles[:, ::-1]
         normals = None if normals is None else normals[:, ::-1]
     return Mesh(

@@ -8,7 +8,7 @@ from pxr import Usd, UsdShade
 from scratchwarp.scene import TextureInput
 
 from .color import space_of
-from .reading import Reading
+from .reading import Reading, fits
 from .texture import Textures
 
 _WRAPS = ("black", "clamp", "repeat", "mirror")
@@ -34,7 +34,9 @@ def read_texture_input(
     index = textures.index(path, asset, automatic if space == "auto" else space)
     is_color = isinstance(default, tuple)
     if index < 0:
-        fallback = _get(reading, node, "fallback")
+        fallback = _get(reading, node, "fallback", None)
+        if fallback is not None and not fits(fallback, (0.0, 0.0, 0.0, 1.0)):
+            fallback = None
         if fallback is None:
             return default
         if is_color and output == "rgb":
@@ -42,11 +44,12 @@ def read_texture_input(
         value = float(fallback["rgba".index(output) if output != "rgb" else 0])
         return (value, value, value) if is_color else value
     uv_set, transform = _coordinates(reading, node)
+    scale, bias = _numbers(reading, node, "scale", 1.0), _numbers(reading, node, "bias", 0.0)
     return TextureInput(
         texture=index,
         channel=output,
-        scale=np.array(_get(reading, node, "scale", (1.0, 1.0, 1.0, 1.0)), np.float64),
-        bias=np.array(_get(reading, node, "bias", (0.0, 0.0, 0.0, 0.0)), np.float64),
+        scale=scale,
+        bias=bias,
         wrap_s=_wrap(reading, node, "wrapS"),
         wrap_t=_wrap(reading, node, "wrapT"),
         transform=transform,
@@ -66,7 +69,19 @@ def _get(reading: Reading, node: UsdShade.Shader, name: str, otherwise: Any = No
     if source is None or UsdShade.Utils.GetType(source.GetName()) == UsdShade.AttributeType.Output:
         return otherwise
     got = source.Get(reading.time)
+    if got is not None and not fits(got, otherwise):
+        reading.warn(source.GetPath(), f"holds {got!r}, which is of the wrong type; {otherwise} is used")
+        return otherwise
     return otherwise if got is None else got
+
+
+def _numbers(reading: Reading, node: UsdShade.Shader, name: str, otherwise: float) -> np.ndarray:
+    """A float4 input, finite."""
+    values = np.array(_get(reading, node, name, (otherwise,) * 4), np.float64)
+    if np.isfinite(values).all():
+        return values
+    reading.warn(node.GetPath(), f"inputs:{name} is {tuple(values.tolist())}; {otherwise:g} is used")
+    return np.full(4, otherwise)
 
 
 def _space(reading: Reading, node: UsdShade.Shader, file: Usd.Attribute | None) -> str:
@@ -115,5 +130,8 @@ def _transform(reading: Reading, node: UsdShade.Shader) -> np.ndarray:
     sx, sy = (float(v) for v in _get(reading, node, "scale", (1.0, 1.0)))
     tx, ty = (float(v) for v in _get(reading, node, "translation", (0.0, 0.0)))
     turn = np.radians(float(_get(reading, node, "rotation", 0.0)))
+    if not np.isfinite((sx, sy, tx, ty, turn)).all():
+        reading.warn(node.GetPath(), "its inputs are not finite; it is ignored")
+        return np.eye(3)
     c, s = np.cos(turn), np.sin(turn)
     return np.array([[c * sx, -s * sy, tx], [s * sx, c * sy, ty], [0.0, 0.0, 1.0]])

@@ -111,3 +111,39 @@ def test_warnings_are_said_once_and_handed_on(write):
     about = [w for w in scene.warnings if "has no faces" in w]
     assert len(about) == 1 and about[0].startswith("/m0, /m1, /m2 and 3 more:")
     assert tuple(heard) == scene.warnings
+
+
+ODD = {
+    "attribute types": (
+        'def SphereLight "l" { string inputs:intensity = "much" }',
+        ["/l.inputs:intensity", "wrong type"],
+    ),
+    "primvar types": (
+        f'def Mesh "m" {{ {QUAD}\nstring primvars:displayColor = "red" }}',
+        ["/m.primvars:displayColor", "no numbers"],
+    ),
+    "single values": (f'def Mesh "m" {{ {QUAD}\nfloat primvars:displayColor = 3 }}', ["displayColor", "ignored"]),
+    "shader types": (
+        f"""def Material "mat" {{
+    token outputs:surface.connect = </mat/s.outputs:surface>
+    def Shader "s" {{
+        uniform token info:id = "UsdPreviewSurface"
+        string inputs:diffuseColor = "red"
+        token outputs:surface
+    }}
+}}
+def Mesh "m" (prepend apiSchemas = ["MaterialBindingAPI"]) {{ rel material:binding = </mat>\n{QUAD} }}""",
+        ["/mat/s.inputs:diffuseColor", "'red'", "wrong type"],
+    ),
+}
+
+
+@pytest.mark.parametrize("case", ODD)
+def test_odd_stages_warn(read, said, case):
+    text, words = ODD[case]
+    said(read(text), *words)
+
+
+def test_transforms_that_usd_cannot_evaluate_are_refused(read):
+    with pytest.raises(StageError, match="/m has xformOps"):
+        read(f'def Mesh "m" {{ {QUAD}\nuniform token[] xformOpOrder = ["xformOp:nope"] }}')
