@@ -53,7 +53,7 @@ def __dir__() -> list[str]:
 
 
 class _Package(types.ModuleType):
-    """Keeps ``scratchwarp.render`` the function when Python, importing the room of that name, would make it the room."""
+    """Keeps ``scratchwarp.render`` the function when Python, importing the room, would make it the room."""
 
     def __setattr__(self, name: str, value: object) -> None:
         if isinstance(value, types.ModuleType) and _PUBLIC.get(name, (None, None))[1] is not None:

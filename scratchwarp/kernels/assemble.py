@@ -93,14 +93,15 @@ def assemble(scene: Scene, plan: EffectPlan, tables: Sequence[Any], device: str 
     packed = lights.pack(scene, device)
     kinds = [k for k in packed.kinds if k in key.lights]
     order = {name: i for i, name in enumerate(key.lights)}
-    rows = [packed.lights[k].numpy() if k in kinds else np.zeros(0, Light.numpy_dtype()) for k in key.lights]
+    row_type: Any = Light
+    rows = [packed.lights[k].numpy() if k in kinds else np.zeros(0, row_type.numpy_dtype()) for k in key.lights]
     starts = np.concatenate([[0], np.cumsum([len(r) for r in rows])]).astype(np.int32)
     flat = np.full(max(len(scene.lights), 1), -1, np.int32)
     for number, (record, slot) in enumerate(zip(scene.lights, packed.slots, strict=True)):
         name = lights.MODELS[type(record)].name
         if name in order:
             flat[number] = starts[order[name]] + slot
-    table = np.concatenate(rows) if len(rows) and starts[-1] else np.zeros(1, Light.numpy_dtype())
+    table = np.concatenate(rows) if len(rows) and starts[-1] else np.zeros(1, row_type.numpy_dtype())
     links = np.ones((max(len(scene.lights), 1), max(len(scene.instances), 1)), np.uint8)
     for number, record in enumerate(scene.lights):
         if record.linked is not None:

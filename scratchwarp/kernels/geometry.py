@@ -171,9 +171,9 @@ def pack(
     for p in parts:
         scales[p["instance"][0]] = p["scale"]
     g.pattern_scale = wp.array(scales, dtype=wp.vec2d, device=device)
-    mesh = None
+    accelerated: wp.Mesh | None = None
     if count:
-        indices = wp.array(np.arange(3 * count, dtype=np.int32), dtype=int, device=device)
-        mesh = wp.Mesh(points=g.points, indices=indices, bvh_constructor="sah", bvh_leaf_size=2)
-        g.mesh = mesh.id
-    return PackedGeometry(g, mesh, count)
+        indices: Any = wp.array(np.arange(3 * count, dtype=np.int32), dtype=int, device=device)
+        accelerated = wp.Mesh(points=g.points, indices=indices, bvh_constructor="sah", bvh_leaf_size=2)
+        g.mesh = accelerated.id
+    return PackedGeometry(g, accelerated, count)

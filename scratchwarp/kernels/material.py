@@ -82,7 +82,7 @@ def _scratch_surface(m: MaterialData, s: ScratchSurface) -> None:
 def pack_layer(plan: LayerPlan, curves: Any = None) -> LayerData:
     """Device record of one sublayer; see ``LayerData``. ``curves``: its packed segments, if it has any."""
     sub, layer = plan.sublayer, plan.sublayer.layer
-    d = LayerData()
+    d: Any = LayerData()
     d.kind = kind_number(sub.distribution)
     d.uv_space = int(layer.space == "uv")
     d.cos_a, d.sin_a = math.cos(sub.angle), math.sin(sub.angle)
@@ -104,7 +104,8 @@ def pack_layer(plan: LayerPlan, curves: Any = None) -> LayerData:
 def pack(scene: Scene, layers: list[list[LayerData]], device: str = "cpu") -> PackedMaterials:
     """Device materials; ``layers[i]`` are the packed sublayers of material i, the ones that cut deepest last."""
     reads: list[TextureRead] = []
-    records, flat = [], []
+    records: list[MaterialData] = []
+    flat: list[LayerData] = []
     for material, own in zip(scene.materials, layers, strict=True):
         m = MaterialData()
         if isinstance(material.surface, PreviewSurface):
@@ -119,5 +120,5 @@ def pack(scene: Scene, layers: list[list[LayerData]], device: str = "cpu") -> Pa
     arrays.materials = wp.array(records or [MaterialData()], dtype=MaterialData, device=device)
     arrays.reads = wp.array(reads or [TextureRead()], dtype=TextureRead, device=device)
     arrays.atlas = texture.pack_textures([t.pixels for t in scene.textures], device=device)
-    packed_layers = wp.array(flat or [LayerData()], dtype=LayerData, device=device)
+    packed_layers: Any = wp.array(flat or [LayerData()], dtype=LayerData, device=device)
     return PackedMaterials(arrays, packed_layers)

@@ -22,10 +22,11 @@ def digest(*parts: Any) -> str:
 def save(path: str | Path, key: str, finished: np.ndarray, sums: Mapping[str, np.ndarray]) -> None:
     """Write the finished tiles [n] and the sums whole: beside the file first, then renamed onto it."""
     target = Path(path)
+    arrays: dict[str, Any] = {f"sum_{name}": values for name, values in sums.items()}
     handle, draft = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
     try:
         with os.fdopen(handle, "wb") as file:
-            np.savez(file, key=np.array(key), finished=finished, **{f"sum_{k}": v for k, v in sums.items()})
+            np.savez(file, key=np.array(key), finished=finished, **arrays)
         os.replace(draft, target)
     except BaseException:
         Path(draft).unlink(missing_ok=True)

@@ -93,7 +93,7 @@ def render(
     progress = progress or silent
     settings = plan.settings
     threads, spp = settings.threads or 1, settings.spp or 1
-    wp.config.quiet = True
+    wp.config.log_level = max(wp.config.log_level, wp.LOG_WARNING)
     wp.init()
     clock, cpu = time.perf_counter(), time.process_time()
     tables = simulate_tables(plan, threads, progress)
@@ -140,7 +140,7 @@ def render(
     last = [time.perf_counter()]
 
     def worker() -> Callable[[Tile], None]:
-        window = Window()
+        window: Any = Window()
         window.x0, window.y0, window.seed = x0, y0, settings.seed or 0
         window.filter_width, window.max_depth = settings.filter_width, settings.max_depth
         if settings.integrator == "direct":

@@ -56,7 +56,7 @@ class Scene:
             if not 0 <= instance.mesh < len(self.meshes):
                 raise ValueError(f"{instance.path}: mesh {instance.mesh} is not one of the {len(self.meshes)} meshes")
             slots = self.meshes[instance.mesh].slots
-            if len(slots) and slots.max() >= len(instance.materials):
+            if slots is not None and len(slots) and slots.max() >= len(instance.materials):
                 raise ValueError(f"{instance.path}: the mesh uses slot {slots.max()}, materials has no such entry")
             for index in instance.materials:
                 if not 0 <= index < len(self.materials):

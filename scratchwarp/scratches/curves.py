@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import warp as wp
@@ -48,10 +49,9 @@ def pack(sets: Sequence[Curves], device: str = "cpu") -> tuple[SegmentArrays, tu
         parts.append((a, b, half))
         bvh, reach = None, 0.0
         if len(a):
-            low, high = (
-                wp.array(f(a, b).astype(np.float32), dtype=wp.vec3, device=device) for f in (np.minimum, np.maximum)
-            )
-            bvh = wp.Bvh(low, high)
+            corners = (np.minimum(a, b).astype(np.float32), np.maximum(a, b).astype(np.float32))
+            boxes: list[Any] = [wp.array(corner, dtype=wp.vec3, device=device) for corner in corners]
+            bvh = wp.Bvh(boxes[0], boxes[1])
             reach = float(half.max())
             if curves.space == "object":
                 reach += float(OFF_PLANE * np.linalg.norm(b - a, axis=1).max())
