@@ -203,7 +203,7 @@ def parser() -> argparse.ArgumentParser:
 
     made = command("simulate", "write the table of a profile, or those of a stage's layers")
     made.add_argument("source", metavar="PROFILE|STAGE", help="name of a shape, file of points (x, z), or USD file")
-    made.add_argument("out", metavar="OUT", help="table.exr, .npz, or .png for a picture: phi_o upwards, square root")
+    made.add_argument("out", metavar="OUT", help="table.exr or .npz, or .png for a picture of it")
     made.add_argument("--layer", metavar="NAME", help="the layer of the stage that is meant")
     made.add_argument("--depth", type=float, default=0.5, help="of a named shape, in widths [0.5]")
     made.add_argument(

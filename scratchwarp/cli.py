@@ -128,8 +128,7 @@ def simulate(args: Command) -> int:
         if table.normal is not None and table.gamma is not None:
             layers |= {"rho": table.normal, "gamma": table.gamma}
         if out.endswith(".png"):
-            shade = np.sqrt(table.mirror / max(float(np.percentile(table.mirror, 99.5)), 1e-9))[::-1, :, None]
-            layers = {"color": np.repeat(shade, 3, axis=2)}
+            layers = {"color": profiles.picture(table, profile)}
         elif out.endswith(".npz"):
             layers |= {"angles": table.angles, "weights": table.weights, "lost": table.lost}
         image.write_layers(layers, out, {"Software": "scratchwarp", "scratchwarp:profile": name, **table.metadata})
