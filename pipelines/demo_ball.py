@@ -51,7 +51,7 @@ def ball(path: Path | str, detail: float = 1.0) -> Path:
     )
     usd.mesh(stage, "foot", pedestal(detail), foot)
     surroundings(stage, detail)
-    usd.camera(stage, (0.0, 21.5, 31.0), (0.0, 0.75, 0.1))
+    usd.camera(stage, (0.0, 21.5, 31.0), (0.0, 0.5, 0.45))
     usd.settings(stage)
     return usd.save(stage, path, "A scratched ball on tiles with every distribution of scratches.")
 
@@ -120,4 +120,4 @@ def surroundings(stage: Usd.Stage, detail: float) -> None:
     usd.sphere_light(stage, "spark", (-16.0, 18.0, -7.0), 0.3, 1500.0, (1.0, 0.85, 0.7))
     usd.sphere_light(stage, "glint", (21.4, 23.0, -1.9), 0.3, 1500.0)
     usd.distant_light(stage, "sky", (0.6, -1.0, -0.1), 3.0, 0.4)
-    usd.dome_light(stage, "ambient", 0.35, (0.75, 0.85, 1.0))
+    usd.dome_light(stage, "ambient", 0.38, (0.92, 0.96, 1.0))
