@@ -14,12 +14,7 @@ def whole(path: Path) -> Iterator[Path]:
 
     OSError naming ``path`` when its folder cannot be written.
     """
-    try:
-        handle, name = tempfile.mkstemp(prefix=f".{path.stem}.", suffix=path.suffix, dir=path.parent)
-    except OSError as error:
-        raise OSError(f"{path}: cannot be written ({error.strerror}); choose another folder") from error
-    os.close(handle)
-    draft = Path(name)
+    draft = begin(path)
     try:
         yield draft
         draft.chmod(0o666 & ~_umask())
@@ -29,6 +24,16 @@ def whole(path: Path) -> Iterator[Path]:
             raise OSError(f"{path}: cannot be written ({error.strerror})") from error
     finally:
         draft.unlink(missing_ok=True)
+
+
+def begin(path: Path) -> Path:
+    """An empty file beside ``path``, with a name of its own and the same suffix; OSError when there can be none."""
+    try:
+        handle, name = tempfile.mkstemp(prefix=f".{path.stem}.", suffix=path.suffix, dir=path.parent)
+    except OSError as error:
+        raise OSError(f"{path}: cannot be written ({error.strerror}); choose another folder") from error
+    os.close(handle)
+    return Path(name)
 
 
 def _umask() -> int:

@@ -1,6 +1,5 @@
 """write(film, path): the suffix chooses the format."""
 
-import os
 import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -10,6 +9,7 @@ import numpy as np
 
 from . import exr, npz, png
 from .view import SRGB, View
+from .whole import begin
 
 if TYPE_CHECKING:
     from ..render import Film
@@ -69,8 +69,8 @@ def check_writable(path: str | Path) -> None:
         raise IsADirectoryError(f"{target}: is a folder; name a file in it")
     if not target.parent.is_dir():
         raise FileNotFoundError(f"{target}: cannot be written, there is no folder {target.parent}; create it first")
-    if not os.access(target.parent, os.W_OK | os.X_OK) or (target.exists() and not os.access(target, os.W_OK)):
-        raise PermissionError(f"{target}: cannot be written, permission denied; choose another folder")
+    draft = begin(target)
+    draft.unlink()
 
 
 def _target(path: str | Path) -> Path:
