@@ -2,13 +2,14 @@
 
 Mitsuba's GGX takes Smith shadowing and masking as independent, ours as correlated by height. The two differ by
 Lambda_o Lambda_i, at most 2e-3 for alpha 0.36 within 50 degrees of the normal (Lambda = (sqrt(1 + alpha^2 tan^2) - 1)
-/ 2 = 0.04), so the rough balls are compared where their normals face the camera within that; the means agree within 0.5 %.
+/ 2 = 0.04), so the rough balls are compared where their normals face the camera within that; there means agree within
+0.5 %.
 """
 
 import numpy as np
 import pytest
 
-from scratchwarp.scene import DomeLight, Material, PreviewSurface, RectLight, ScratchSurface, Texture
+from scratchwarp.scene import DomeLight, Material, RectLight, ScratchSurface, Texture
 
 from . import scenes
 from .mitsuba_reference import T, agreement, area, deviations, matrix, mi, rgb, sensor, shoot
