@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 
 from scratchwarp import profiles
-from scratchwarp.optics import Conductor
+from scratchwarp.optics import Conductor, Dielectric
 from scratchwarp.profiles.launch import default_threads
 from scratchwarp.profiles.profile import normalised
 
@@ -53,18 +53,19 @@ def shares(table):
 
 
 def timed(call, repeats):
-    """(median seconds, last result) after one call to warm up."""
+    """(median wall seconds, median processor seconds of all threads, last result) after one call to warm up."""
     result = call()
-    seconds = []
+    wall, processor = [], []
     for _ in range(repeats):
-        start = time.perf_counter()
+        start, start_cpu = time.perf_counter(), time.process_time()
         result = call()
-        seconds.append(time.perf_counter() - start)
-    return float(np.median(seconds)), result
+        wall.append(time.perf_counter() - start)
+        processor.append(time.process_time() - start_cpu)
+    return float(np.median(wall)), float(np.median(processor)), result
 
 
 def measure(options, function):
-    """Rows (name, rays, milliseconds, error)."""
+    """Rows (name, rays, milliseconds, error, processor milliseconds)."""
     weights = profiles.table.bin_weights(BINS)
 
     def new_profile():
@@ -83,10 +84,10 @@ def measure(options, function):
     ):
         for rays in counts:
             repeats = max(1, options.repeats * 1000 // rays)
-            seconds, found = timed(
+            seconds, cpu, found = timed(
                 lambda r=rays, a=linear, b=stratified: c_shares(function, new_profile(), r, a, b), repeats
             )
-            rows.append((name, rays, 1e3 * seconds, error(found)))
+            rows.append((name, rays, 1e3 * seconds, error(found), 1e3 * cpu))
     for sampler, counts in (
         ("beam", (64, 96, 128, 192, 256, 384, 512, 1024, 2048, 4096, 8192)),
         ("stratified", (128, 512, 2048, 8192)),
@@ -94,16 +95,16 @@ def measure(options, function):
     ):
         for rays in counts:
             repeats = options.repeats if rays <= 1024 else 3
-            seconds, table = timed(
+            seconds, cpu, table = timed(
                 lambda s=sampler, r=rays: profiles.simulate(new_profile(), resolution=BINS, rays=r, sampler=s), repeats
             )
-            rows.append((sampler, rays, 1e3 * seconds, error(shares(table))))
+            rows.append((sampler, rays, 1e3 * seconds, error(shares(table)), 1e3 * cpu))
     iron = Conductor(2.91, 3.09)
     for rays in (96, 192, 256, 512):
-        seconds, table = timed(
+        seconds, cpu, table = timed(
             lambda r=rays: profiles.simulate(new_profile(), resolution=BINS, rays=r, fresnel=iron), options.repeats
         )
-        rows.append(("beam, iron: three slices", rays, 1e3 * seconds, error(shares(table))))
+        rows.append(("beam, iron: three slices", rays, 1e3 * seconds, error(shares(table)), 1e3 * cpu))
     return rows
 
 
@@ -122,9 +123,9 @@ def report(options, rows):
     lines = [
         f"{options.shape}, depth {options.depth}, 64 arcs, {BINS} x {BINS}, {default_threads()} threads, medians",
         "",
-        "| sampler | rays a bin | ms | row-L1 |",
-        "|---|---:|---:|---:|",
-        *(f"| {name} | {rays} | {ms:.1f} | {error:.4f} |" for name, rays, ms, error in rows),
+        "| sampler | rays a bin | ms | row-L1 | CPU ms |",
+        "|---|---:|---:|---:|---:|",
+        *(f"| {name} | {rays} | {ms:.1f} | {error:.4f} | {cpu:.1f} |" for name, rays, ms, error, cpu in rows),
         "",
     ]
     for wanted in (0.09, 0.016):
@@ -157,8 +158,48 @@ def plot(rows, path):
     figure.savefig(path)
 
 
+def draw_shapes(path):
+    """Every named shape at depth 0.5, with its table by number of bounces, as one PNG."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    size, columns = 256, 4
+    pictures = []
+    for name in profiles.shape_names():
+        profile = profiles.shape(name, depth=0.5)
+        pictures.append(profiles.picture(profiles.simulate(profile), profile, size))
+    height = max(picture.shape[0] for picture in pictures)
+    padded = [np.pad(p, ((height - len(p), 0), (0, 0), (0, 0)), constant_values=0.18) for p in pictures]
+    rows = [np.concatenate(padded[k : k + columns], axis=1) for k in range(0, len(padded), columns)]
+    plt.imsave(path, np.clip(np.concatenate(rows), 0.0, 1.0) ** (1.0 / 2.2))
+
+
+def theta_report():
+    """Largest albedo error of each theta model, as Markdown."""
+    iron, glass = Conductor(2.91, 3.09), Dielectric(1.5)
+    reflectors = (("iron, exact", iron), ("iron, Lazanyi", Conductor(2.91, 3.09, "lazanyi")), ("glass, exact", glass))
+    shapes = (
+        ("quartic", 0.3),
+        ("quartic", 0.6),
+        ("vGroove", 0.5),
+        ("vGroove", 1.07),
+        ("round", 0.5),
+        ("rectangle", 1.0),
+    )
+    lines = ["| profile | reflector | " + " | ".join(profiles.THETA_MODELS) + " |"]
+    lines.append("|---|---|" + "---:|" * len(profiles.THETA_MODELS))
+    for name, depth in shapes:
+        for title, fresnel in reflectors:
+            errors = profiles.theta_model_errors(profiles.shape(name, depth=depth), fresnel)
+            cells = " | ".join(f"{errors[m]:.4f}" for m in profiles.THETA_MODELS)
+            lines.append(f"| {name} {depth} | {title} | {cells} |")
+    return "\n".join(lines)
+
+
 def main(argv=None):
-    """Measure, print, and write docs/profiles_error.png and docs/profiles_error.md with --docs."""
+    """Measure and print; with --docs, write profiles_error.png, profiles_error.md and profiles_shapes.png there."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--docs", type=Path)
     parser.add_argument("--shape", default="quartic", choices=profiles.shape_names())
@@ -172,7 +213,10 @@ def main(argv=None):
     print(text)
     if options.docs:
         plot(rows, options.docs / "profiles_error.png")
-        (options.docs / "profiles_error.md").write_text("# Error against time of profile tables\n\n" + text + "\n")
+        draw_shapes(options.docs / "profiles_shapes.png")
+        theta = "## Largest error of a directional albedo by theta model\n\n" + theta_report()
+        page = f"# Measured: profile tables\n\n## Error against time\n\n{text}\n\n{theta}\n"
+        (options.docs / "profiles_error.md").write_text(page)
     return 0
 
 
