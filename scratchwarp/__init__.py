@@ -29,9 +29,12 @@ _PUBLIC = {
     "EffectPlan": ("scratchwarp.plan", "EffectPlan"),
     "EffectChoice": ("scratchwarp.plan", "EffectChoice"),
     "Film": ("scratchwarp.render", "Film"),
+    "mdf": ("scratchwarp.reflectance.mdf", None),
+    "measured": ("scratchwarp.reflectance.measured", None),
     "optics": ("scratchwarp.optics", None),
     "profiles": ("scratchwarp.profiles", None),
     "scene": ("scratchwarp.scene", None),
+    "stencils": ("scratchwarp.reflectance.stencils", None),
 }
 
 __all__ = ["__version__", *sorted(_PUBLIC)]
