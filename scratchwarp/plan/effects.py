@@ -67,7 +67,7 @@ def _interreflection(f: Facts) -> Answer:
 
 def _fresnel(f: Facts) -> Answer:
     found = [u for t in f.tables if t.fresnel is not None for u in t.users]
-    return _answer(found, "reflectance varies along the cone: slices at 0, 60, 90 degrees", "mirrors need one table")
+    return _answer(found, "reflectance varies along the cone: 17 slices of theta", "mirrors need one table")
 
 
 def _diffuse_scratches(f: Facts) -> Answer:
