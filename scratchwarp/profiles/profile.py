@@ -168,6 +168,11 @@ def normalised(profile: Profile) -> tuple[np.ndarray, np.ndarray]:
                 wall = 0.5 * (rim + vertices[end])
                 vertices = np.concatenate((rim, vertices) if end == 0 else (vertices, rim))
                 middles = np.concatenate((wall, middles) if end == 0 else (middles, wall))
+    elif vertices[0, 1] != vertices[-1, 1]:
+        # repeated, the ends meet in a wall
+        step = np.array([[1.0, vertices[0, 1]]])
+        middles = np.concatenate((middles, 0.5 * (vertices[-1:] + step)))
+        vertices = np.concatenate((vertices, step))
     vertices[0, 0], vertices[-1, 0] = 0.0, 1.0
     short = np.abs(np.diff(vertices, axis=0)).max(axis=1) < _SHORTEST
     if np.any(short):

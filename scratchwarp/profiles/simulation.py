@@ -74,14 +74,17 @@ def simulate_full(
     fresnel: Any = None,
     polarised: bool = False,
     threads: int | None = None,
+    theta_model: str = "exact",
+    store: Store | None = None,
     **request: Any,
 ) -> np.ndarray:
     """rho_s at each of ``thetas`` [rad], float32 ``[T, M, M]`` (``[T, M, M, 3]`` for a coloured reflector): one
     trace, the reflectance of every path evaluated at every theta, nothing approximated in theta.
 
-    Takes ``simulate``'s resolution, rays, fresnel, incidence, sampler, max_bounces, seed, polarised and threads, and
-    raises as it does.
+    Takes ``simulate``'s other keywords and raises as it does. ``theta_model`` and ``store`` are checked and change
+    nothing: nothing is approximated, and nothing kept.
     """
+    nodes(theta_model)
     wanted = checked(profile, request)
     reflector = reflecting(fresnel)
     count = len(cosines_of(thetas)) * (1 if reflector is None else int(reflector.channels))

@@ -146,7 +146,8 @@ def plot(rows, path):
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 
-    figure, axes = plt.subplots(figsize=(6.4, 4.4), dpi=130)
+    matplotlib.rcParams["svg.hashsalt"] = "profiles"
+    figure, axes = plt.subplots(figsize=(6.4, 4.4))
     for name in dict.fromkeys(row[0] for row in rows):
         points = sorted((row[2], row[3]) for row in rows if row[0] == name)
         axes.loglog(*zip(*points, strict=True), marker="o", ms=4, label=name, ls="--" if name.startswith("C ") else "-")
@@ -155,7 +156,7 @@ def plot(rows, path):
     axes.grid(True, which="both", alpha=0.3)
     axes.legend(fontsize=8)
     figure.tight_layout()
-    figure.savefig(path)
+    figure.savefig(path, metadata={"Date": None})
 
 
 def draw_shapes(path):
@@ -199,7 +200,7 @@ def theta_report():
 
 
 def main(argv=None):
-    """Measure and print; with --docs, write profiles_error.png, profiles_error.md and profiles_shapes.png there."""
+    """Measure and print; with --docs, write profiles_error.svg, profiles_error.md and profiles_shapes.png there."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--docs", type=Path)
     parser.add_argument("--shape", default="quartic", choices=profiles.shape_names())
@@ -212,7 +213,7 @@ def main(argv=None):
     text = report(options, rows)
     print(text)
     if options.docs:
-        plot(rows, options.docs / "profiles_error.png")
+        plot(rows, options.docs / "profiles_error.svg")
         draw_shapes(options.docs / "profiles_shapes.png")
         theta = "## Largest error of a directional albedo by theta model\n\n" + theta_report()
         page = f"# Measured: profile tables\n\n## Error against time\n\n{text}\n\n{theta}\n"

@@ -110,6 +110,8 @@ CASES = {
     "bulging": (rough(2, bulge=0.1), False),
     "bulging alone": (rough(2, bulge=0.1), True),
     "box": (np.array([[0, 0], [0.1, 0], [0.1, -1.0], [0.9, -1.0], [0.9, 0], [1, 0]]), False),
+    "ends of different height": (rough(8) + np.linspace([0, 0], [0, 0.25], 41), False),
+    "ends of different height, undercut": (UNDERCUT + [[0, -0.2], [0, 0], [0, 0], [0, 0], [0, 0], [0, 0.1]], False),
     "sunk, alone": (rough(3) - (0, 0.1), True),
 }
 
@@ -129,6 +131,27 @@ def test_paths_agree_with_float64_brute_force(brute_force, name):
     # a path may take the other side of a vertex when it passes within 1e-7 of it: 8 facets an end, a few bounces
     assert close.mean() > 0.998
     assert same.mean() > 0.998
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_random_outlines_agree_with_brute_force(brute_force, seed):
+    """Spiky, walled, tilted and shallow outlines, alone and repeated: nothing is lost that float64 does not follow
+    for long."""
+    rng = np.random.default_rng(seed)
+    count = int(rng.integers(2, 20))
+    x = np.concatenate(([0.0], np.sort(rng.random(count)), [1.0]))
+    if seed % 3 == 0:
+        x = np.repeat(x, 2)[1:-1]
+    points = np.stack((x, rng.normal(0.0, (0.01, 0.1, 0.5)[seed % 3], len(x))), axis=1)
+    entry, phi = rng.random(1000), rng.uniform(-1.5, 1.5, 1000)
+    alone = seed % 2 == 0
+    truth, bounces, _ = brute_force.trace(points, phi, entry, isolated=alone, periods=20, max_bounces=200)
+    rays = profiles.trace(profiles.Profile(points, alone), phi, entry)
+    followed = bounces > 0
+    assert followed.mean() > 0.98
+    agree = (rays.bounces == bounces) & (np.abs(rays.phi_o - truth) < 1e-4)
+    assert agree[followed].mean() > 0.995
+    assert np.all(rays.bounces[followed] > 0)
 
 
 @pytest.mark.parametrize("scale", [1e-9, 1.0, 1e9])
