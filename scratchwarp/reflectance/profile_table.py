@@ -26,7 +26,7 @@ def rows_to_unit_energy(mirror: np.ndarray, weights: np.ndarray) -> np.ndarray:
 
 
 def _steps(table: Any, scale: np.ndarray) -> np.ndarray:
-    """rho_s at the steps of the theta model, [phi_o, steps + 1, phi_i, 3]; cells are scaled by ``scale`` [phi_o, phi_i]."""
+    """rho_s at the steps of the theta model, [phi_o, steps + 1, phi_i, 3], times ``scale`` [phi_o, phi_i]."""
     model = theta_model(MODEL)
     assert model is not None
     # the model's cosines descend from 1, its steps ascend from the mirror
