@@ -31,6 +31,7 @@ _PUBLIC = {
     "Film": ("scratchwarp.render", "Film"),
     "mdf": ("scratchwarp.reflectance.mdf", None),
     "measured": ("scratchwarp.reflectance.measured", None),
+    "diffraction": ("scratchwarp.reflectance.diffraction", None),
     "optics": ("scratchwarp.optics", None),
     "profiles": ("scratchwarp.profiles", None),
     "scene": ("scratchwarp.scene", None),

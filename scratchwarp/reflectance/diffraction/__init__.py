@@ -1,0 +1,41 @@
+"""Fine scratches diffract: wave optics of single scratches, area lights in closed form, footprints and colours.
+
+Source: Velinov, Werner and Hullin 2018, Real-Time Rendering of Wave-Optical Effects on Scratched Surfaces, with its
+Eq. 16, 18, 26, 31, 35 and 40 mended. Lengths in micrometres, wavelengths in nanometres, the shading frame has n = +z.
+
+Files: ``scratch``, ``light``, ``outline`` the records; ``reflection``, ``lighting``, ``ellipse``, ``color``, ``energy``
+the calls; ``quadrature`` the reference in NumPy; ``inputs``, ``arrays`` between Python and the device. On the device:
+``scratch_device`` the response of a scratch (``faddeeva_device`` its ends, ``lobe_device`` its width,
+``outline_device`` its profile), ``slice_device`` one slice of a light, ``sphere_device`` and ``polygon_device`` where
+lights are cut, ``radiance_device`` all slices, ``ellipse_device``, ``color_device``; ``*_kernels`` loop over arrays.
+Public names load on first use.
+"""
+
+import importlib
+
+_PUBLIC = {
+    "Scratch": "scratch",
+    "SphereLight": "light",
+    "PolygonLight": "light",
+    "brdf": "reflection",
+    "brdf_coherent": "reflection",
+    "radiance": "lighting",
+    "footprint": "ellipse",
+    "coverage": "ellipse",
+    "rgb": "color",
+    "balance": "energy",
+}
+
+__all__ = sorted(_PUBLIC)
+
+
+def __getattr__(name: str):
+    if name not in _PUBLIC:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(importlib.import_module(f"{__name__}.{_PUBLIC[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -1,0 +1,115 @@
+"""A spherical light cut by a slice: an interval of psi around psi_p = atan2(p_2, p_3), p the unit axis.
+
+The slice's point nearest to the axis is the angle e away, and the cap of half angle a reaches d to both sides of psi_p,
+sin^2(d / 2) = sin((a - e) / 2) sin((a + e) / 2) / (s rho), rho = hypot(p_2, p_3): 1 - cos d without its cancellation,
+without quadratic equations, for lights of any size.
+"""
+
+import warp as wp
+
+from .quadrature_device import Rules
+from .real_device import HALF, ONE, PI, TWO, ZERO, real, vec3
+from .scratch_device import WaveScratch, to_scratch
+from .slice_device import Lobe, LobeTables, SliceSum, add_crossing
+
+_BEYOND = wp.constant(real(4.0))
+
+
+@wp.struct
+class SphereView:
+    """A sphere seen from the origin in the frame of a scratch; ``around``: the origin lies in it."""
+
+    p: vec3
+    half_angle: real
+    around: int
+
+
+@wp.func
+def view_sphere(center: vec3, radius: real, s: WaveScratch) -> SphereView:
+    """Look at a sphere given in the shading frame."""
+    r = SphereView()
+    biggest = wp.max(wp.max(wp.abs(center[0]), wp.abs(center[1])), wp.max(wp.abs(center[2]), radius))
+    if biggest > ZERO:
+        c = to_scratch(s, center / biggest)
+        distance = wp.length(c)
+        sine = radius / biggest
+        if distance <= sine:
+            r.around = 1
+            r.half_angle = PI
+            r.p = vec3(ZERO, ZERO, ONE)
+        else:
+            r.p = c / distance
+            # asin(R / d) in a form that is exact for both small and grazing spheres
+            r.half_angle = wp.atan2(sine, wp.sqrt((distance - sine) * (distance + sine)))
+    return r
+
+
+@wp.func
+def sphere_breaks(light: SphereView, s: WaveScratch, after: real) -> vec3:
+    """Least and greatest u of the cap, and the next u beyond ``after`` where it begins, ends or meets the horizon (4:
+    none)."""
+    if light.around != 0 or light.half_angle == ZERO:
+        e = wp.where(light.around != 0, ONE, ZERO)
+        return vec3(-e, e, _BEYOND)
+    p = light.p
+    a = light.half_angle
+    from_axis = wp.atan2(wp.sqrt(p[1] * p[1] + p[2] * p[2]), p[0])
+    low = wp.where(from_axis + a >= PI, -ONE, wp.cos(from_axis + a))
+    high = wp.where(from_axis <= a, ONE, wp.cos(from_axis - a))
+    following = real(_BEYOND)
+    if low > after:
+        following = low
+    if high > after:
+        following = wp.min(following, high)
+    flat = wp.sqrt(p[0] * p[0] + p[1] * p[1])
+    level = wp.cos(a)
+    if flat > level:
+        middle = wp.atan2(p[1], p[0])
+        spread = wp.acos(level / flat)
+        for side in range(2):
+            at = wp.cos(middle + real(2 * side - 1) * spread)
+            if at > after:
+                following = wp.min(following, at)
+    return vec3(low, high, following)
+
+
+@wp.func
+def _add_interval(
+    acc: SliceSum, lobe: Lobe, tables: LobeTables, rules: Rules, u: real, lo: real, hi: real
+) -> SliceSum:
+    r = acc
+    if lo < hi:
+        s = wp.sqrt(wp.max((ONE - u) * (ONE + u), ZERO))
+        r = add_crossing(r, lobe, tables, rules, u, s * wp.sin(lo), s * wp.cos(lo), -1)
+        r = add_crossing(r, lobe, tables, rules, u, s * wp.sin(hi), s * wp.cos(hi), 1)
+    return r
+
+
+@wp.func
+def cut_sphere(light: SphereView, lobe: Lobe, tables: LobeTables, rules: Rules, u: real) -> SliceSum:
+    """The crossings of the slice at u with the part of the sphere above the horizon."""
+    r = SliceSum()
+    half_turn = HALF * PI
+    if light.around != 0:
+        return _add_interval(r, lobe, tables, rules, u, -half_turn, half_turn)
+    p = light.p
+    s = wp.sqrt(wp.max((ONE - u) * (ONE + u), ZERO))
+    rho = wp.sqrt(p[1] * p[1] + p[2] * p[2])
+    e = wp.atan2(wp.abs(s * p[0] - rho * u), s * rho + u * p[0])
+    a = light.half_angle
+    if e < a:
+        sine2 = wp.sin(HALF * (a - e)) * wp.sin(wp.min(HALF * (a + e), half_turn))
+        middle = wp.atan2(p[1], p[2])
+        if sine2 >= s * rho:
+            r = _add_interval(r, lobe, tables, rules, u, -half_turn, half_turn)
+        else:
+            d = TWO * wp.asin(wp.sqrt(sine2 / (s * rho)))
+            lo = middle - d
+            hi = middle + d
+            r = _add_interval(r, lobe, tables, rules, u, wp.max(lo, -half_turn), wp.min(hi, half_turn))
+            # an axis far below the horizon: the cap comes back a whole turn later
+            if hi > real(3.0) * half_turn:
+                r = _add_interval(r, lobe, tables, rules, u, -half_turn, wp.min(hi - TWO * PI, half_turn))
+            if lo < -real(3.0) * half_turn:
+                r = _add_interval(r, lobe, tables, rules, u, wp.max(lo + TWO * PI, -half_turn), half_turn)
+    return r
