@@ -8,31 +8,11 @@ Files:
     checkpoint  finished tiles on disk
     progress    the progress bar
 
-``scratchwarp.render`` is both this room and the function that renders, so the room can be called.
+``scratchwarp.render`` is the function; ``from scratchwarp.render import Film`` finds this room all the same.
 """
-
-import sys
-import types
-from typing import Any
 
 from .film import AOVS, Film
 from .progress import bar
+from .renderer import render
 
 __all__ = ["AOVS", "Film", "bar", "render"]
-
-
-def render(scene: Any, plan: Any, **options: Any) -> Film:
-    """Render a planned scene; see ``renderer.render`` for the options."""
-    from .renderer import render as run
-
-    return run(scene, plan, **options)
-
-
-class _Room(types.ModuleType):
-    """A module that renders when it is called."""
-
-    def __call__(self, scene: Any, plan: Any, **options: Any) -> Film:
-        return render(scene, plan, **options)
-
-
-sys.modules[__name__].__class__ = _Room

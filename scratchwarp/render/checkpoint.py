@@ -5,6 +5,7 @@ import os
 import tempfile
 import zipfile
 from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,11 +13,29 @@ import numpy as np
 
 
 def digest(*parts: Any) -> str:
-    """A short hash of everything that decides the image."""
+    """A short hash of everything that decides the image: records with all their fields, arrays to the last bit."""
     sha = hashlib.sha256()
-    for part in parts:
-        sha.update(part.tobytes() if isinstance(part, np.ndarray) else repr(part).encode())
+    _absorb(sha, parts)
     return sha.hexdigest()[:16]
+
+
+def _absorb(sha: Any, part: Any) -> None:
+    """Feed a value to the hash with its type and size, so that no two values look alike."""
+    if isinstance(part, np.ndarray):
+        sha.update(f"{part.dtype}{part.shape}".encode())
+        sha.update(np.ascontiguousarray(part))
+    elif is_dataclass(part) and not isinstance(part, type):
+        _absorb(sha, (type(part).__name__, *(getattr(part, f.name) for f in fields(part))))
+    elif isinstance(part, Mapping):
+        _absorb(sha, tuple(sorted(part.items())))
+    elif isinstance(part, frozenset):
+        _absorb(sha, tuple(sorted(part)))
+    elif isinstance(part, tuple | list):
+        sha.update(f"({len(part)}".encode())
+        for inner in part:
+            _absorb(sha, inner)
+    else:
+        sha.update(f"{part!r},".encode())
 
 
 def save(path: str | Path, key: str, finished: np.ndarray, sums: Mapping[str, np.ndarray]) -> None:
@@ -42,12 +61,14 @@ def load(path: str | Path, key: str, sums: Mapping[str, np.ndarray]) -> np.ndarr
         return None
     try:
         with np.load(path, allow_pickle=False) as stored:
-            if str(stored["key"]) != key:
-                raise ValueError(
-                    f"{path}: the checkpoint is of another stage, settings or version; delete it or leave out --resume"
-                )
-            for name, array in sums.items():
-                array[...] = stored[f"sum_{name}"]
-            return np.array(stored["finished"])
-    except (OSError, KeyError, zipfile.BadZipFile) as error:
+            arrays = {name: stored[name] for name in stored.files}
+        found, finished = str(arrays["key"]), arrays["finished"]
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
         raise ValueError(f"{path}: not a checkpoint of scratchwarp ({error})") from None
+    if found != key:
+        raise ValueError(
+            f"{path}: the checkpoint is of another stage, settings or version; delete it or leave out --resume"
+        )
+    for name, array in sums.items():
+        array[...] = arrays[f"sum_{name}"]
+    return finished

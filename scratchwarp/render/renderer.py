@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -17,10 +18,9 @@ from ..scene import Scene
 from . import checkpoint as checkpoints
 from . import develop
 from .film import Film
-from .progress import silent
+from .progress import Progress, silent
 from .tiles import Tile, run, tiles
 
-Progress = Callable[[int, int, str], None]
 # Samples of one launch: long enough to hide its overhead, short enough to stop between launches.
 SAMPLES_A_LAUNCH = 32
 # Seconds between checkpoints.
@@ -209,11 +209,6 @@ def render(
 
 
 def scene_digest(scene: Scene) -> str:
-    """Hash of the geometry, materials, lights and camera that decide an image."""
-    parts: list[Any] = [scene.path, scene.time, scene.camera.transform]
-    for mesh in scene.meshes:
-        parts += [mesh.points, mesh.triangles]
-    parts += [i.transform for i in scene.instances]
-    parts += [repr(m) for m in scene.materials]
-    parts += [repr(light) for light in scene.lights]
-    return checkpoints.digest(*parts)
+    """Hash of everything in the scene that decides an image."""
+    decisive = [f.name for f in fields(scene) if f.name not in ("warnings", "seconds")]
+    return checkpoints.digest(*(getattr(scene, name) for name in decisive))
