@@ -4,7 +4,6 @@ The layout is that of a small asset: /World (component) with the Scopes geo, mtl
 /World/camera, and /Render/settings.
 """
 
-import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -13,6 +12,7 @@ import numpy as np
 from pxr import Gf, Kind, Sdf, Tf, Usd, UsdGeom, UsdLux, UsdRender, UsdShade, Vt
 
 from scratchwarp import usd_schemas
+from scratchwarp.whole import whole
 
 from .demo_shapes import Shape
 
@@ -38,15 +38,12 @@ def save(stage: Usd.Stage, path: Path | str, comment: str) -> Path:
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     stage.GetRootLayer().comment = f"{comment} Written by scratchwarp.pipelines.author_demo."
-    part = path.with_name(f".{path.stem}.{os.getpid()}.usda")
-    try:
-        if not stage.GetRootLayer().Export(str(part)):
-            raise OSError(f"{path}: cannot be written")
-        os.replace(part, path)
-    except Tf.ErrorException as error:
-        raise OSError(f"{path}: cannot be written: {error}") from None
-    finally:
-        part.unlink(missing_ok=True)
+    with whole(path) as draft:
+        try:
+            if not stage.GetRootLayer().Export(str(draft)):
+                raise OSError(f"{path}: cannot be written")
+        except Tf.ErrorException as error:
+            raise OSError(f"{path}: cannot be written: {error}") from None
     opened = Sdf.Layer.Find(str(path))
     if opened is not None:
         opened.Reload(force=True)

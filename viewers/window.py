@@ -1,6 +1,5 @@
 """The window: meshes with directions and scratches, the rendered image, each layer's profile and table."""
 
-import os
 from pathlib import Path
 from typing import Any
 
@@ -8,6 +7,7 @@ import numpy as np
 
 import scratchwarp as sw
 from scratchwarp.scene import Camera, Scene
+from scratchwarp.whole import whole
 
 from . import camera as camera_view
 from . import curves, directions, image, meshes, profiles, tables
@@ -82,12 +82,8 @@ def check_writable(path: Path) -> None:
 
 def write(plotter: Any, path: Path) -> None:
     """Write what the plotter shows, whole or not at all."""
-    part = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")
-    try:
-        plotter.screenshot(str(part))
-        os.replace(part, path)
-    finally:
-        part.unlink(missing_ok=True)
+    with whole(path) as draft:
+        plotter.screenshot(str(draft))
 
 
 class Window:

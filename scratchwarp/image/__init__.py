@@ -1,7 +1,6 @@
 """Film to EXR, PNG and NPZ, and image files to textures; the only importer of OpenImageIO.
 
 Files:
-    whole       a file that appears whole or not at all
     layers      which channels and precision a layer of an image has
     exr         layers to and from multi-layer EXR
     npz         layers to and from NumPy archives

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import OpenImageIO as oiio
 
+from ..whole import whole
 from .layers import channels, gather
-from .whole import whole
 
 # ITU-R BT.709 primaries and the D65 white point: red, green, blue, white as (x, y).
 CHROMATICITIES = (0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290)

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from ..whole import whole
 from .layers import check
-from .whole import whole
 
 
 def write(layers: Mapping[str, np.ndarray], path: Path, metadata: Mapping[str, Any]) -> None:

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import OpenImageIO as oiio
 
+from ..whole import whole
 from .exr import put
 from .layers import channels
 from .view import View
-from .whole import whole
 
 
 def write(layers: Mapping[str, np.ndarray], path: Path, metadata: Mapping[str, Any], view: View) -> None:

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..whole import begin
 from . import exr, npz, png
 from .view import SRGB, View
-from .whole import begin
 
 if TYPE_CHECKING:
     from ..render import Film

@@ -7,7 +7,6 @@ when the folder outgrows its limit.
 
 import hashlib
 import os
-import tempfile
 import zipfile
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -18,9 +17,10 @@ import numpy as np
 
 from scratchwarp.profiles.profile import Profile
 from scratchwarp.profiles.table import Table, assembled
+from scratchwarp.whole import whole
 
 # Raised whenever the same arguments would give other numbers than before.
-TABLE_VERSION = 1
+TABLE_VERSION = 2
 _SUFFIX = ".profile.npz"
 _FOLDER_VARIABLE = "SCRATCHWARP_CACHE"
 _UNREADABLE = (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile)
@@ -74,14 +74,8 @@ class Store:
         """Write ``table`` under ``key``, then drop the least recently used files over the limit (never the one just
         written)."""
         self.path.mkdir(parents=True, exist_ok=True)
-        handle, temporary = tempfile.mkstemp(dir=self.path, prefix="writing-")
-        try:
-            with os.fdopen(handle, "wb") as stream:
-                write_table(table, stream)
-            os.replace(temporary, self.path / (key + _SUFFIX))
-        except BaseException:
-            Path(temporary).unlink(missing_ok=True)
-            raise
+        with whole(self.path / (key + _SUFFIX)) as draft, draft.open("wb") as stream:
+            write_table(table, stream)
         self._trim(key + _SUFFIX)
 
     def table(self, key: str, simulate: Callable[[], Table]) -> Table:

@@ -1,8 +1,6 @@
 """Finished tiles on disk, so that an interrupted render goes on where it stopped, to the same bits."""
 
 import hashlib
-import os
-import tempfile
 import zipfile
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
@@ -10,6 +8,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+from ..whole import whole
 
 
 def digest(*parts: Any) -> str:
@@ -39,17 +39,10 @@ def _absorb(sha: Any, part: Any) -> None:
 
 
 def save(path: str | Path, key: str, finished: np.ndarray, sums: Mapping[str, np.ndarray]) -> None:
-    """Write the finished tiles [n] and the sums whole: beside the file first, then renamed onto it."""
-    target = Path(path)
+    """Write the finished tiles [n] and the sums, whole or not at all."""
     arrays: dict[str, Any] = {f"sum_{name}": values for name, values in sums.items()}
-    handle, draft = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
-    try:
-        with os.fdopen(handle, "wb") as file:
-            np.savez(file, key=np.array(key), finished=finished, **arrays)
-        os.replace(draft, target)
-    except BaseException:
-        Path(draft).unlink(missing_ok=True)
-        raise
+    with whole(Path(path)) as draft, draft.open("wb") as file:
+        np.savez(file, key=np.array(key), finished=finished, **arrays)
 
 
 def load(path: str | Path, key: str, sums: Mapping[str, np.ndarray]) -> np.ndarray | None:

@@ -5,7 +5,8 @@ import OpenImageIO as oiio
 import pytest
 
 from scratchwarp import image
-from scratchwarp.image import exr, whole
+from scratchwarp.image import exr
+from scratchwarp.whole import whole
 
 
 def test_exr_keeps_every_layer_at_its_precision(tmp_path, small_film):
@@ -83,7 +84,7 @@ def test_no_nan_is_written(tmp_path, suffix, value, small_film):
 def test_interrupted_write_leaves_the_old_file(tmp_path, error):
     target = tmp_path / "a.exr"
     target.write_text("old")
-    with pytest.raises(error), whole.whole(target) as draft:
+    with pytest.raises(error), whole(target) as draft:
         draft.write_text("half")
         raise error
     assert target.read_text() == "old"
@@ -109,10 +110,10 @@ def test_unwritable_outputs_are_named_beforehand(tmp_path, small_film):
 
 
 def test_a_folder_that_takes_no_file_is_named_beforehand(tmp_path, monkeypatch):
-    def refuse(**options):
+    def refuse(path, mode):
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr(whole.tempfile, "mkstemp", refuse)
+    monkeypatch.setattr(Path, "open", refuse)
     with pytest.raises(OSError, match="a.exr.*Permission denied"):
         image.check_writable(tmp_path / "a.exr")
 

@@ -1,7 +1,7 @@
 """A file that appears whole or not at all."""
 
 import os
-import tempfile
+import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -17,7 +17,6 @@ def whole(path: Path) -> Iterator[Path]:
     draft = begin(path)
     try:
         yield draft
-        draft.chmod(0o666 & ~_umask())
         try:
             os.replace(draft, path)
         except OSError as error:
@@ -28,15 +27,9 @@ def whole(path: Path) -> Iterator[Path]:
 
 def begin(path: Path) -> Path:
     """An empty file beside ``path``, with a name of its own and the same suffix; OSError when there can be none."""
+    draft = path.with_name(f".{path.stem}.{uuid.uuid4().hex[:12]}{path.suffix}")
     try:
-        handle, name = tempfile.mkstemp(prefix=f".{path.stem}.", suffix=path.suffix, dir=path.parent)
+        draft.open("xb").close()
     except OSError as error:
         raise OSError(f"{path}: cannot be written ({error.strerror}); choose another folder") from error
-    os.close(handle)
-    return Path(name)
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
+    return draft
