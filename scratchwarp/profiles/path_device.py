@@ -62,7 +62,7 @@ def path_function(height_field: bool) -> Any:
         inside = bool(True)
         while inside:
             hit, where, shift = next_hit(outline, o, d, k, t)
-            if hit >= 0 or hit == GROUND:
+            if (hit >= 0 or hit == GROUND) and bounces < max_bounces:
                 n = wp.vec2(0.0, 1.0)
                 p = o
                 curvature = float(0.0)
@@ -93,9 +93,6 @@ def path_function(height_field: bool) -> Any:
                 t = where
                 bounces += 1
                 if hit == GROUND:
-                    inside = False
-                elif bounces >= max_bounces:
-                    bounces = -1
                     inside = False
             else:
                 inside = False

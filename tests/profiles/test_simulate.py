@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from scratchwarp import profiles
+from scratchwarp import optics, profiles
 from scratchwarp.optics import Conductor
 
 UNDERCUT = [[0, 0], [0.3, 0.1], [0.1, -0.4], [0.9, -0.5], [0.7, 0.05], [1, 0]]
@@ -204,6 +204,23 @@ def test_deep_box_reports_what_it_loses():
     np.testing.assert_allclose(total + table.lost, 1.0, atol=1e-5)
     whole = profiles.simulate(profiles.shape("rectangle", depth=3.0), resolution=32, rays=64)
     assert whole.lost.max() < 1e-3
+
+
+def test_the_bounce_cap_counts_whole_paths():
+    """A path of as many reflections as allowed is whole: one is enough where light cannot meet the profile twice."""
+    for fresnel in (None, optics.Schlick((0.5, 0.4, 0.3))):
+        once, often = (
+            profiles.simulate(profiles.shape("flat"), resolution=32, rays=64, fresnel=fresnel, max_bounces=cap)
+            for cap in (1, 2000)
+        )
+        assert once.lost.max() == 0.0
+        np.testing.assert_array_equal(once.mirror, often.mirror)
+        if fresnel is not None:
+            np.testing.assert_array_equal(once.normal, often.normal)
+    # head-on, a V of 45 degrees reflects everything twice
+    vee = profiles.shape("vGroove", depth=0.5)
+    assert profiles.trace(vee, 0.0, [0.2, 0.8], max_bounces=2).bounces.tolist() == [2, 2]
+    assert profiles.trace(vee, 0.0, [0.2, 0.8], max_bounces=1).bounces.tolist() == [-1, -1]
 
 
 def test_grazing_bins_conserve_energy():
