@@ -16,7 +16,7 @@ class KernelKey:
         normal_maps, display_colors, textures: of the materials.
         preview, measured: UsdPreviewSurface bases, ScratchSurface bases.
         diffuse_scratches: some scratch is a Lambert surface.
-        delta_lights: some light has no extent. light_links: some light picks what it lights.
+        light_links: some light picks what it lights.
         light_multipliers: some light's diffuse or specular multiplier is not 1.
         mesh_lights: some geometry is a light. path: indirect bounces.
     """
@@ -36,7 +36,6 @@ class KernelKey:
     preview: bool = True
     measured: bool = False
     diffuse_scratches: bool = False
-    delta_lights: bool = False
     light_links: bool = False
     light_multipliers: bool = False
     mesh_lights: bool = False

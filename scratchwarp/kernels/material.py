@@ -25,7 +25,6 @@ class PackedMaterials:
 
     arrays: MaterialArrays
     layers: Any
-    curves: tuple[Any, ...] = ()
 
 
 def _read(value: Any, reads: list[TextureRead]) -> int:

@@ -6,6 +6,7 @@ Files:
     effects     the effects and how each is decided; a new effect is one line there
     cost        about what each effect costs
     layers      the scene's layers -> sublayers and the tables they share
+    theta       which theta model a table needs
     profiles    a ScratchProfile record -> a profile to simulate
     occlusion   whether anything can cast a shadow
     make        make_plan

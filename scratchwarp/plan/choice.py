@@ -28,6 +28,8 @@ class TablePlan:
     Attributes:
         profile: a ``profiles.Profile`` scaled to its aspect; fresnel: an ``optics`` reflector, None for a mirror.
         max_bounces: 1 where light cannot meet the profile twice.
+        theta_model: how the table varies along the cone, the cheapest that is accurate enough; error: its largest
+            error of an albedo.
         users: the layers that share it.
     """
 
@@ -38,6 +40,8 @@ class TablePlan:
     users: tuple[str, ...]
     resolution: int = 256
     rays: int = 128
+    theta_model: str = "gamma"
+    error: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)

@@ -67,7 +67,9 @@ def _interreflection(f: Facts) -> Answer:
 
 def _fresnel(f: Facts) -> Answer:
     found = [u for t in f.tables if t.fresnel is not None for u in t.users]
-    return _answer(found, "reflectance varies along the cone: 17 slices of theta", "mirrors need one table")
+    models = {t.theta_model: max(u.error for u in f.tables if u.theta_model == t.theta_model) for t in f.tables}
+    how = ", ".join(f"{name} within {error:.2g}" for name, error in models.items())
+    return _answer(found, f"reflectance varies along the cone: {how}", "mirrors need one table")
 
 
 def _diffuse_scratches(f: Facts) -> Answer:

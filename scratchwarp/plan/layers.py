@@ -1,16 +1,19 @@
 """The scene's layers -> sublayers to render and the tables they share."""
 
 import math
+from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from .. import optics
 from ..optics import metals
-from ..scene import Layer, Material, Scene, ScratchSurface, TextureInput
+from ..scene import Layer, Material, PreviewSurface, Scene, ScratchSurface, TextureInput
 from ..scratches.expand import sublayers
 from .choice import LayerPlan, TablePlan
 from .profiles import cross_section
+from .theta import theta_model
 
 _MODELS = {"exact": "exact", "schlick": "schlick", "lazanyi": "lazanyi", "lazanyiError": "lazanyi-error"}
 
@@ -76,10 +79,24 @@ def lobe_weight(fresnel: Any) -> float:
     return float(max(np.max(fresnel.reflectance(math.sqrt(0.5))), 0.02))
 
 
+def _sized(scene: Scene, layer: Layer, curves: int) -> Layer:
+    """The layer with the size of its scratches: that of the middle one of an explicit set, else its own."""
+    if curves < 0:
+        return layer
+    record = scene.curves[curves]
+    if record.width_unit != record.depth_unit or not len(record.widths):
+        return layer
+    width, depth = float(np.median(record.widths)), float(np.median(record.depths))
+    return replace(layer, width=width, depth=depth) if width > 0.0 else layer
+
+
 def plan_layers(
-    scene: Scene, allowed: Any, settings: Any
+    scene: Scene, allowed: Callable[[str], bool], max_error: float | None = None
 ) -> tuple[tuple[tuple[LayerPlan, ...], ...], tuple[TablePlan, ...], tuple[str, ...]]:
-    """(sublayers of each material, tables to simulate, warnings); ``allowed(distribution)``: whether it may be on."""
+    """(sublayers of each material, tables to simulate, warnings).
+
+    ``allowed(distribution)``: whether it may be on; ``max_error``: of a table's albedos, None for the default.
+    """
     tables: dict[tuple[Any, ...], int] = {}
     plans: list[dict[str, Any]] = []
     warnings: list[str] = []
@@ -102,7 +119,7 @@ def plan_layers(
                     color = material.surface.color
                 own += [LayerPlan(s, -1, False, max(*color, 0.02), color) for s in subs]
                 continue
-            if isinstance(material.surface, ScratchSurface) is False and layer.material == "inherit":
+            if isinstance(material.surface, PreviewSurface) and layer.material == "inherit":
                 textured = [
                     n
                     for n in ("diffuse_color", "metallic", "specular_color")
@@ -110,24 +127,29 @@ def plan_layers(
                 ]
                 if textured and not isinstance(fresnel, optics.Dielectric | optics.Mirror):
                     warnings.append(f"{layer.label}: scratches reflect by the mean of the textured {textured[0]}")
-            profile = cross_section(layer.profile, layer)
-            aspect = layer.depth / layer.width
-            points = b"" if layer.profile.points is None else layer.profile.points.tobytes()
-            p = layer.profile
-            key = (p.shape, points, p.rim, p.rim_width, p.periodic, p.parameters, round(aspect, 12), fresnel)
-            if key not in tables:
-                tables[key] = len(plans)
-                flat = p.rim == 0.0 and (p.shape == "flat" or aspect == 0.0)
-                plans.append(
-                    {
-                        "profile": profile,
-                        "fresnel": None if isinstance(fresnel, optics.Mirror) else fresnel,
-                        "max_bounces": 1 if flat else 2000,
-                        "users": [],
-                    }
-                )
-            plans[tables[key]]["users"].append(layer.label)
-            own += [LayerPlan(s, tables[key], keeps, lobe_weight(fresnel)) for s in subs]
+            for sub in subs:
+                sized = _sized(scene, layer, sub.curves)
+                p, aspect = layer.profile, sized.depth / sized.width
+                points = b"" if p.points is None else p.points.tobytes()
+                key = (p.shape, points, p.rim, p.rim_width, p.periodic, p.parameters, round(aspect, 12), fresnel)
+                if key not in tables:
+                    tables[key] = len(plans)
+                    flat = p.rim == 0.0 and (p.shape == "flat" or aspect == 0.0)
+                    profile = cross_section(p, sized)
+                    reflecting = None if isinstance(fresnel, optics.Mirror) else fresnel
+                    model, error = theta_model(profile, reflecting, max_error)
+                    plans.append(
+                        {
+                            "profile": profile,
+                            "fresnel": reflecting,
+                            "max_bounces": 1 if flat else 2000,
+                            "theta_model": model,
+                            "error": error,
+                            "users": [],
+                        }
+                    )
+                plans[tables[key]]["users"].append(layer.label)
+                own.append(LayerPlan(sub, tables[key], keeps, lobe_weight(fresnel)))
         every.append(tuple(own))
     made = tuple(
         TablePlan(key, users=tuple(dict.fromkeys(row.pop("users"))), **row)

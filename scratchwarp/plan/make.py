@@ -5,11 +5,15 @@ from dataclasses import replace
 
 from ..lights.registry import MODELS
 from ..scene import Scene, Settings
-from .choice import EffectChoice, EffectPlan
+from .choice import EffectChoice, EffectPlan, LayerPlan, TablePlan
 from .cost import shares
 from .effects import EFFECTS, Facts
 from .layers import plan_layers
 from .resolve import resolve
+
+
+_MISSING = ("diffraction", "grooves")  # authored and planned, but not rendered yet
+Layers = tuple[tuple[LayerPlan, ...], ...]
 
 
 def make_plan(scene: Scene, settings: Settings | None = None) -> EffectPlan:
@@ -27,7 +31,7 @@ def make_plan(scene: Scene, settings: Settings | None = None) -> EffectPlan:
     def allowed(distribution: str) -> bool:
         return forced.get("scratches", True) and forced.get(f"scratches.{distribution}", True)
 
-    layers, tables, warnings = plan_layers(scene, allowed, decided)
+    layers, tables, warnings = plan_layers(scene, allowed, decided.max_error)
     used = sorted({m for instance in scene.instances for m in instance.materials})
     facts = Facts(scene, decided, tuple(scene.materials[i] for i in used), layers, tables)
     effects = {}
@@ -38,8 +42,13 @@ def make_plan(scene: Scene, settings: Settings | None = None) -> EffectPlan:
             enabled = forced[name]
         effects[name] = EffectChoice(enabled, reason, prims, name in forced)
     counts = {f"lights.{m.name}": sum(type(x) is r for x in scene.lights) for r, m in MODELS.items()}
+    layers, tables = _without(effects, layers, tables)
     by_cost = shares(effects, layers, counts, decided.max_depth or 1)
     effects = {n: replace(c, share=by_cost.get(n, 0.0)) for n, c in effects.items()}
+    warnings += tuple(
+        f"effects: {name} cannot be forced on in this version" for name in _MISSING if effects[name].enabled
+    )
+    effects |= {name: replace(effects[name], enabled=False) for name in _MISSING}
     waved = effects["diffraction"].prims
     warnings += tuple(f"{prim}: ScratchWaveAPI is rendered by geometric optics in this version" for prim in waved)
     warnings += tuple(
@@ -48,7 +57,7 @@ def make_plan(scene: Scene, settings: Settings | None = None) -> EffectPlan:
         if light.shadow_linked is not None
     )
     if decided.max_error is not None:
-        warnings += (f"max_error {decided.max_error:g} is not honoured in this version; the samples are {decided.spp}",)
+        warnings += (f"max_error {decided.max_error:g} chooses the tables, not the samples, in this version; they are {decided.spp}",)
     x0, x1, y0, y1 = window
     numbers = {
         "image": f"{size[0]} x {size[1]} pixels, {x1 - x0} x {y1 - y0} rendered, {decided.spp} samples each, "
@@ -67,3 +76,19 @@ def make_plan(scene: Scene, settings: Settings | None = None) -> EffectPlan:
         numbers=numbers,
         seconds=time.perf_counter() - start,
     )
+
+
+def _without(
+    effects: dict[str, EffectChoice], layers: Layers, tables: tuple[TablePlan, ...]
+) -> tuple[Layers, tuple[TablePlan, ...]]:
+    """What is left of layers and tables when effects of scratches are forced off: one bounce, mirrors, no scratches
+    that reflect by a table, or none that are Lambert surfaces."""
+    off = {name for name, choice in effects.items() if choice.forced and not choice.enabled}
+    if "scratches.table" in off:
+        tables = ()
+    if "scratches.interreflection" in off:
+        tables = tuple(replace(t, max_bounces=1) for t in tables)
+    if "scratches.fresnel" in off:
+        tables = tuple(replace(t, fresnel=None) for t in tables)
+    kept = {True: "scratches.table" not in off, False: "scratches.diffuse" not in off}
+    return tuple(tuple(p for p in own if kept[p.table >= 0]) for own in layers), tables

@@ -12,7 +12,7 @@ wp.set_module_options({"enable_backward": False})
 
 @wp.struct
 class LayerData:
-    """One sublayer. Lengths in pattern units; see ``expand.pack`` for where each value comes from."""
+    """One sublayer. Lengths in pattern units; see ``kernels.material.pack_layer`` for where each value comes from."""
 
     kind: int  # position in scratches.KINDS
     uv_space: int  # 1: pattern space is the uv square

@@ -96,6 +96,22 @@ def test_forcing_scratches_off_drops_their_tables():
     assert plan.tables == () and not plan.on("scratches.worley")
 
 
+def test_what_scratches_do_can_be_forced_off():
+    scene = S.scene([S.sphere(8, 16)], [S.scratched(surface=PreviewSurface(metallic=1.0))], [S.dome()])
+    by_itself = sw.make_plan(scene).tables[0]
+    assert by_itself.max_bounces > 1 and by_itself.fresnel is not None
+
+    def forced(name, value=False):
+        return sw.make_plan(scene, sw.Settings(effects={name: value}))
+
+    once = forced("scratches.interreflection")
+    assert once.tables[0].max_bounces == 1 and "by itself on" in once.effects["scratches.interreflection"].reason
+    assert forced("scratches.fresnel").tables[0].fresnel is None
+    assert forced("scratches.table").tables == () and not any(forced("scratches.table").layers)
+    missing = forced("grooves", True)
+    assert not missing.on("grooves") and "grooves cannot be forced on" in missing.warnings[0]
+
+
 @pytest.mark.parametrize(
     ("mesh", "convex"),
     [(S.sphere(8, 16), True), (S.plane(), True), (S.sphere(8, 16, smooth=False), True)],
