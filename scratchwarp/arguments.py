@@ -144,7 +144,7 @@ _EXAMPLES = {
     "render": """scratchwarp render ball.usda ball.exr -w 480 --spp 16
   scratchwarp render ball.usda ball.png -cam /World/Close -color openColorIO
   scratchwarp render shot.usda shot.####.exr --frames 101:110x3,115 --sessionLayer scratched.usda
-  scratchwarp render ball.usda ball.exr --aov depth,normal --effect interreflection=off --json
+  scratchwarp render ball.usda ball.exr --aov depth,normal --effect scratches.interreflection=off --json
   scratchwarp render ball.usda ball.exr --spp 4096 --checkpoint ball.part --resume""",
     "explain": "scratchwarp explain ball.usda\n  scratchwarp explain ball.usda --effect shadows=off --json",
     "simulate": """scratchwarp simulate quartic quartic.exr --depth 0.4

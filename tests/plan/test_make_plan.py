@@ -97,7 +97,7 @@ def test_forcing_scratches_off_drops_their_tables():
 
 
 def test_what_scratches_do_can_be_forced_off():
-    scene = S.scene([S.sphere(8, 16)], [S.scratched(surface=PreviewSurface(metallic=1.0))], [S.dome()])
+    scene = S.scene([S.sphere(8, 16)], [S.scratched(fresnel="exact", surface=PreviewSurface(metallic=1.0))], [S.dome()])
     by_itself = sw.make_plan(scene).tables[0]
     assert by_itself.max_bounces > 1 and by_itself.fresnel is not None
 
