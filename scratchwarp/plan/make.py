@@ -11,7 +11,6 @@ from .effects import EFFECTS, Facts
 from .layers import plan_layers
 from .resolve import resolve
 
-
 _MISSING = ("diffraction", "grooves")  # authored and planned, but not rendered yet
 Layers = tuple[tuple[LayerPlan, ...], ...]
 
@@ -57,7 +56,7 @@ def make_plan(scene: Scene, settings: Settings | None = None) -> EffectPlan:
         if light.shadow_linked is not None
     )
     if decided.max_error is not None:
-        warnings += (f"max_error {decided.max_error:g} chooses the tables, not the samples, in this version; they are {decided.spp}",)
+        warnings += (f"max_error {decided.max_error:g} chooses tables, not samples ({decided.spp}), in this version",)
     x0, x1, y0, y1 = window
     numbers = {
         "image": f"{size[0]} x {size[1]} pixels, {x1 - x0} x {y1 - y0} rendered, {decided.spp} samples each, "

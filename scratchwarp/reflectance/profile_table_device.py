@@ -1,8 +1,9 @@
 """Reflectance of a scratch from its simulated table (Raymond 2016 Eq. 5).
 
-With theta a reflector's table follows parabolas through three of the equal steps of t = mu (1 + SHIFT) / (mu + SHIFT),
-mu = cos(theta), that the "table" model of ``profiles.theta`` keeps. Raymond's power of theta (Eq. 2) is off by up to a
-third of the light on exact metals at steep theta; parabolas by 0.3 %, half of what straight lines are.
+With theta a reflector's table follows the model that the plan chose for it (``profiles.theta``): Raymond's power of
+theta (Eq. 2, "gamma"), or parabolas through three of the equal steps of t = mu (1 + shift) / (mu + shift), mu =
+cos(theta), of "quadratic" (2 steps) and "table" (16). Eq. 2 is off by up to a third of the light on exact metals at
+steep theta; parabolas through 16 steps by 0.3 %, half of what straight lines are.
 
 Between bins of phi_o the row is drawn at random with the weights of linear interpolation, so that value, density and
 energy stay those of whole rows; the caller draws a row once for each shading point and uses it throughout.
@@ -12,19 +13,17 @@ import warp as wp
 
 wp.set_module_options({"enable_backward": False})
 
-SHIFT = wp.constant(0.15)  # s of ``profiles.theta``'s "table" model
-
-
 @wp.struct
 class TableArrays:
     """All tables of a plan, M bins of phi each; rows of ``mirror`` are normalised to energy sum_i mirror w_i = 1."""
 
     bins: int
     mirror: wp.array3d(dtype=float)  # [table, phi_o, phi_i]
-    slices: wp.array4d(dtype=wp.vec3)  # [reflector, phi_o, steps + 1, phi_i]: rho_s, linear Rec.709; step 0 the mirror
-    steps: int
+    slices: wp.array3d(dtype=wp.vec3)  # [phi_o, rows of all reflectors, phi_i]: rho_s, linear Rec.709
+    first: wp.array(dtype=int)  # table -> its first row in ``slices``, the mirror; -1: a mirror throughout
+    steps: wp.array(dtype=int)  # table -> steps from there to theta = 0; 0: Eq. 2, rows mirror, theta = 0, gamma
+    shift: wp.array(dtype=float)  # table -> s of its steps
     cdf: wp.array3d(dtype=float)  # [table, phi_o, M + 1]
-    reflector: wp.array(dtype=int)  # table -> its place in ``slices``; -1: a mirror
 
 
 @wp.struct
@@ -55,17 +54,25 @@ def bin_weight(tables: TableArrays, i: int) -> float:
 @wp.func
 def table_value(tables: TableArrays, table: int, row: int, column: int, sin_theta: float) -> wp.vec3:
     """rho_s [1/rad] at a theta."""
-    k = tables.reflector[table]
-    if k < 0:
+    first = tables.first[table]
+    if first < 0:
         mirror = tables.mirror[table, row, column]
         return wp.vec3(mirror, mirror, mirror)
+    steps = tables.steps[table]
+    if steps == 0:
+        r = wp.asin(wp.clamp(wp.abs(sin_theta), 0.0, 1.0)) * (2.0 / wp.pi)
+        g = tables.slices[row, first + 2, column]
+        w = wp.vec3(wp.pow(r, g[0]), wp.pow(r, g[1]), wp.pow(r, g[2]))
+        normal = tables.slices[row, first + 1, column]
+        return normal + wp.cw_mul(w, tables.slices[row, first, column] - normal)
     mu = wp.sqrt(wp.max(1.0 - sin_theta * sin_theta, 0.0))
-    at = mu * (1.0 + SHIFT) / (mu + SHIFT) * float(tables.steps)
-    middle = wp.clamp(int(at + 0.5), 1, tables.steps - 1)
+    shift = tables.shift[table]
+    at = mu * (1.0 + shift) / (mu + shift) * float(steps)
+    middle = wp.clamp(int(at + 0.5), 1, steps - 1)
     d = at - float(middle)
-    value = (0.5 * d * (d - 1.0)) * tables.slices[k, row, middle - 1, column]
-    value += (1.0 - d * d) * tables.slices[k, row, middle, column]
-    value += (0.5 * d * (d + 1.0)) * tables.slices[k, row, middle + 1, column]
+    value = (0.5 * d * (d - 1.0)) * tables.slices[row, first + middle - 1, column]
+    value += (1.0 - d * d) * tables.slices[row, first + middle, column]
+    value += (0.5 * d * (d + 1.0)) * tables.slices[row, first + middle + 1, column]
     return wp.vec3(wp.max(value[0], 0.0), wp.max(value[1], 0.0), wp.max(value[2], 0.0))
 
 

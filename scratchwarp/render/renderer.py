@@ -13,7 +13,6 @@ from .. import __version__, profiles
 from ..kernels import KernelKey, assemble
 from ..kernels.film_device import FilmArrays, Window
 from ..plan import EffectPlan
-from ..reflectance import profile_table
 from ..scene import Scene
 from . import checkpoint as checkpoints
 from . import develop
@@ -56,7 +55,7 @@ def simulate_tables(plan: EffectPlan, threads: int, progress: Progress = silent)
                 rays=table.rays,
                 fresnel=table.fresnel,
                 max_bounces=table.max_bounces,
-                theta_model=profile_table.MODEL,
+                theta_model=table.theta_model,
                 threads=threads,
             )
         )
