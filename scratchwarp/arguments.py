@@ -90,6 +90,7 @@ def reading(args: argparse.Namespace) -> dict[str, Any]:
         "session_layer": args.sessionLayer,
         "mask": listed(args.mask) or None,
         "render_settings": args.renderSettingsPrimPath,
+        "default_time": getattr(args, "defaultTime", False),
     }
 
 
@@ -189,8 +190,10 @@ def parser() -> argparse.ArgumentParser:
     add_stage(made)
     made.add_argument("out", metavar="OUT", help="image.exr, .png or .npz; ### stands for the frame number")
     when = made.add_mutually_exclusive_group()
-    when.add_argument("--frames", "-f", metavar="SPEC", help="101:110x3,115 is 101, 104, 107, 110 and 115")
-    when.add_argument("--defaultTime", "-d", action="store_true", help="values without a time, as without --frames")
+    when.add_argument(
+        "--frames", "-f", metavar="SPEC", help="101:110x3,115 is 101, 104, 107, 110 and 115 [the earliest]"
+    )
+    when.add_argument("--defaultTime", "-d", action="store_true", help="defaults, even of attributes with samples")
     made.add_argument("--aov", action="append", default=[], metavar="NAMES", help="layers besides color, alpha [all]")
     made.add_argument("--checkpoint", metavar="FILE", help="keep finished tiles here while rendering")
     made.add_argument("--resume", action="store_true", help="start from the tiles of --checkpoint")
@@ -226,7 +229,7 @@ def parser() -> argparse.ArgumentParser:
     made.epilog = "\n".join([str(made.epilog), "", "keys:", *(f"  {key}  {what}" for key, what in KEYS.items())])
     made.add_argument("stage", metavar="STAGE", help="USD file")
     made.add_argument("--screenshot", metavar="FILE", help="write this picture instead, without a display")
-    made.add_argument("--frame", "-f", metavar="N", help="time code [the default time]")
+    made.add_argument("--frame", "-f", metavar="N", help="time code [the earliest]")
     made.add_argument("--camera", "-cam", metavar="NAME", help="camera prim, by path or name")
     made.add_argument("--imageWidth", "-w", type=int, metavar="PIXELS", help="of the rendered image in it")
     made.add_argument("--spp", type=int, help="samples a pixel of the rendered image in it")

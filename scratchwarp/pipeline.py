@@ -17,9 +17,11 @@ def read(
     """Read a USD stage.
 
     Args:
-        path: .usd, .usda, .usdc or .usdz file. frame: time code, None for the default time.
+        path: .usd, .usda, .usdc or .usdz file.
+        frame: time code; None reads every attribute at its earliest sample, or its default where it has none.
         camera: prim path or name; None takes the render settings' camera, then the stage's.
-        purposes: included purposes. options: session_layer, mask, render_settings of ``stage.read``.
+        purposes: included purposes.
+        options: default_time, session_layer, mask, render_settings and warn of ``stage.read``.
 
     Raises StageError (a ValueError) or OSError naming the file, the prim and the value that is at fault.
     """

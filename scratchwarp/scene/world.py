@@ -19,7 +19,7 @@ class Scene:
     """A stage at one time, in metres relative to ``origin``.
 
     Attributes:
-        path: file the stage was read from; time: its time code, None for the default time.
+        path: file the stage was read from; time: its time code, None where none was asked for.
         origin: world position of the local origin [m], float64, shape [3]; the camera's position, so that a scene far
             from the world's origin keeps its precision.
         up: world up axis, unit, shape [3].

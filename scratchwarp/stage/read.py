@@ -36,6 +36,7 @@ def read(
     session_layer: str | Path | None = None,
     mask: str | Iterable[str] | None = None,
     render_settings: str | None = None,
+    default_time: bool = False,
     warn: Callable[[str], None] | None = None,
 ) -> Scene:
     """Read a stage at one time.
@@ -43,6 +44,7 @@ def read(
     Args:
         path: a .usd, .usda, .usdc or .usdz file.
         frame: time code; None reads every attribute at its earliest sample, or its default where it has none.
+        default_time: read every attribute's default, even where it has samples; ``frame`` is then None.
         camera: path or name of the camera; None: the render settings', the primary, the first, else one that frames
             the scene.
         purposes: purposes to include besides default; the render settings' authored includedPurposes replace the two
@@ -62,11 +64,14 @@ def read(
         raise StageError(f"purposes name {', '.join(unknown)}; known are {', '.join(ALL_PURPOSES)}")
     if frame is not None and not np.isfinite(frame):
         raise StageError(f"frame is {frame}; expected a time code")
+    if frame is not None and default_time:
+        raise StageError(f"frame is {frame} and default_time is set; give one of them")
+    unsampled = Usd.TimeCode.Default() if default_time else Usd.TimeCode.EarliestTime()
     with gathered_diagnostics(path, warnings), usd_errors(path):
         stage = open_stage(path, session_layer, mask, [k for k in (camera, render_settings) if k])
         reading = Reading(
             stage=stage,
-            time=Usd.TimeCode.EarliestTime() if frame is None else Usd.TimeCode(float(frame)),
+            time=unsampled if frame is None else Usd.TimeCode(float(frame)),
             path=str(path),
             metres=metres_per_unit(path, stage),
             warn=warnings,

@@ -33,7 +33,10 @@ def test_what_usdrecord_calls_it(renderer, tmp_path):
         "mask": ("/A", "/B"),
         "session_layer": "s.usda",
         "render_settings": "/R/S",
+        "default_time": False,
     }
+    assert status("render", "a.usda", tmp_path / "a.exr", "--defaultTime") == 0
+    assert renderer.reads[1][1]["default_time"] and renderer.reads[1][1]["frame"] is None
 
 
 def test_renderer_options(renderer, tmp_path):

@@ -192,3 +192,14 @@ def test_time_samples_of_points_are_read_at_the_frame(read):
     assert read(body, frame=3).meshes[0].points[0, 2] == 2
     assert read(body).meshes[0].points[0, 2] == 0
     assert read(body, frame=2).time == 2 and read(body).time is None
+
+
+def test_the_default_time_passes_over_samples(read):
+    up = "double3 xformOp:translate"
+    moved = f"    {up} = (0, 0, 7)\n    {up}.timeSamples = {{ 1: (0, 0, 4) }}\n"
+    moved += '    uniform token[] xformOpOrder = ["xformOp:translate"]\n'
+    body = f'def Mesh "m"\n{{{QUAD}{moved}{NONE}}}'
+    earliest, default = (s.bounds()[0] + s.origin for s in (read(body), read(body, default_time=True)))
+    np.testing.assert_allclose(default[2] / earliest[2], 7 / 4)
+    with pytest.raises(StageError, match="give one of them"):
+        read(body, frame=1, default_time=True)
