@@ -148,7 +148,7 @@ _EXAMPLES = {
   scratchwarp render ball.usda ball.exr --aov depth,normal --effect scratches.interreflection=off --json
   scratchwarp render ball.usda ball.exr --spp 4096 --checkpoint ball.part --resume""",
     "explain": "scratchwarp explain ball.usda\n  scratchwarp explain ball.usda --effect shadows=off --json",
-    "simulate": """scratchwarp simulate quartic quartic.exr --depth 0.4
+    "simulate": """scratchwarp simulate quartic quartic.exr --depth 0.4 --plot quartic.png
   scratchwarp simulate groove.csv groove.png --metal gold --resolution 128
   scratchwarp simulate ball.usda tables.##.npz""",
     "validate": "scratchwarp validate ball.usda\n  scratchwarp validate ball.usda --strict --json",
@@ -219,6 +219,9 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("--sampler", default="beam", help="beam, stratified or random [beam]")
     made.add_argument("--incidence", default="cell", help="cell or centre [cell]")
     made.add_argument("--maxBounces", type=int, default=2000, help="[2000]")
+    made.add_argument("--thetaModel", default="gamma", help="gamma, quadratic, table or exact [gamma]")
+    made.add_argument("--polarised", action="store_true", help="polarised products along the path")
+    made.add_argument("--plot", metavar="FILE", help="a picture, too: bounces in red, green, blue above the profile")
     made.add_argument("--seed", type=int, default=0, help="[0]")
 
     made = command("validate", "check a stage against the scratch schemas", json_too=True)

@@ -105,7 +105,9 @@ def simulate(args: Command) -> int:
     from . import image, profiles
     from .frames import is_numbered, numbered
 
-    found = arguments.cross_sections(args)
+    found, store = arguments.cross_sections(args), profiles.store()
+    if args.plot and len(found) > 1 and not is_numbered(args.plot):
+        raise UsageError(f"--plot {args.plot} is one file for {len(found)} tables: choose one by --layer, or write ###")
     if len(found) > 1 and not is_numbered(args.out):
         names = "; ".join(name for name, _, _ in found)
         raise UsageError(
@@ -113,7 +115,10 @@ def simulate(args: Command) -> int:
         )
     for number, (name, profile, fresnel) in enumerate(found, 1):
         out = numbered(args.out, float(number))
-        image.check_writable(out)
+        plot = args.plot and numbered(args.plot, float(number))
+        for path in (out, plot):
+            if path:
+                image.check_writable(path)
         table = profiles.simulate(
             profile,
             resolution=args.resolution,
@@ -123,6 +128,9 @@ def simulate(args: Command) -> int:
             sampler=args.sampler,
             max_bounces=args.maxBounces,
             seed=args.seed,
+            theta_model=args.thetaModel,
+            polarised=args.polarised,
+            store=store,
         )
         layers = {"mirror": table.mirror, **{f"bounce{i + 1}": part for i, part in enumerate(table.by_bounce)}}
         if table.normal is not None and table.gamma is not None:
@@ -131,7 +139,10 @@ def simulate(args: Command) -> int:
             layers = {"color": profiles.picture(table, profile)}
         elif out.endswith(".npz"):
             layers |= {"angles": table.angles, "weights": table.weights, "lost": table.lost}
-        image.write_layers(layers, out, {"Software": "scratchwarp", "scratchwarp:profile": name, **table.metadata})
+        header = {"Software": "scratchwarp", "scratchwarp:profile": name, **table.metadata}
+        image.write_layers(layers, out, header)
+        if plot:
+            image.write_layers({"color": profiles.picture(table, profile)}, plot, header)
         if not args.quiet:
             print(f"{out}: {name}, {table.rays} rays, largest loss {float(np.max(table.lost)):.2g}", flush=True)
     return 0

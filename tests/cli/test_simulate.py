@@ -67,3 +67,12 @@ def test_points_at_fault_are_1(tmp_path, capsys, source, text, message):
 def test_what_is_neither_shape_nor_file(tmp_path, capsys):
     assert main(["simulate", "quartik", str(tmp_path / "t.npz")]) == 2
     assert "quartic" in capsys.readouterr().err
+
+
+def test_plot_writes_a_picture_beside_the_table(tmp_path):
+    """The picture is colour, the table holds the theta model asked for."""
+    out, plot = tmp_path / "q.npz", tmp_path / "q.png"
+    words = ["simulate", "quartic", str(out), "--plot", str(plot), "--resolution", "32", "--rays", "16", "--quiet"]
+    assert main([*words, "--metal", "iron", "--thetaModel", "table"]) == 0
+    assert plot.stat().st_size > 1000
+    assert np.load(out)["rho"].shape == (32, 32, 3)
