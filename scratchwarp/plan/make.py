@@ -30,7 +30,10 @@ def make_plan(scene: Scene, settings: Settings | None = None) -> EffectPlan:
     def allowed(distribution: str) -> bool:
         return forced.get("scratches", True) and forced.get(f"scratches.{distribution}", True)
 
-    layers, tables, warnings = plan_layers(scene, allowed, decided.max_error)
+    try:
+        layers, tables, warnings = plan_layers(scene, allowed, decided.max_error)
+    except ValueError as error:
+        raise ValueError(f"{scene.path}: {error}") from None
     used = sorted({m for instance in scene.instances for m in instance.materials})
     facts = Facts(scene, decided, tuple(scene.materials[i] for i in used), layers, tables)
     effects = {}

@@ -28,11 +28,15 @@ def gathered_diagnostics(path: str | Path, warn: Warnings) -> Iterator[None]:
 
 @contextmanager
 def usd_errors(path: str | Path) -> Iterator[None]:
-    """An error that USD raises meanwhile becomes a StageError about ``path``."""
+    """An error that USD raises meanwhile becomes a StageError about ``path``; one about a prim of it names it too."""
     try:
         yield
     except Tf.ErrorException as error:
         raise StageError(f"{path}: USD gives up on it ({_first_error(error)})") from None
+    except ValueError as error:
+        if str(path) in str(error):
+            raise
+        raise StageError(f"{path}: {error}") from None
 
 
 def open_stage(

@@ -90,6 +90,13 @@ def test_forcing_says_so_and_unknown_names_are_refused():
         sw.make_plan(plain(), sw.Settings(effects={"glitter": True}))
 
 
+def test_a_profile_that_cannot_be_simulated_names_the_file_and_the_prim():
+    backwards = Profile(path="/mat/p", shape="points", points=[(1, 0), (0.5, -1), (0, 0)])
+    scene = S.scene([S.sphere(8, 16)], [S.scratched(profile=backwards)], [S.dome()])
+    with pytest.raises(ValueError, match=r"^test: /mat/p \(for /mat layer 'fine'\): points"):
+        sw.make_plan(scene)
+
+
 def test_forcing_scratches_off_drops_their_tables():
     scene = S.scene([S.sphere(8, 16)], [S.scratched()], [S.dome()])
     plan = sw.make_plan(scene, sw.Settings(effects={"scratches": False}))

@@ -72,9 +72,9 @@ def test_meshes_that_cannot_be_rendered_are_left_out(read, said, body, word):
     assert [i.path for i in scene.instances] == ["/good"]
 
 
-def test_points_that_are_not_finite_name_the_prim_and_the_point(read):
+def test_points_that_are_not_finite_name_the_file_the_prim_and_the_point(read):
     text = QUAD.replace("(1, 1, 0)", "(1, nan, 0)")
-    with pytest.raises(StageError, match=r"/m: points\[2\]"):
+    with pytest.raises(StageError, match=r"stage.usda: /m: points\[2\]"):
         read(f'def Mesh "m"\n{{{text}{NONE}}}')
 
 
