@@ -1,8 +1,5 @@
 """``EffectPlan.explain``: the plan as text."""
 
-import importlib.util
-from pathlib import Path
-
 import pytest
 
 import scratchwarp as sw
@@ -12,9 +9,7 @@ from scratchwarp.plan.cost import LIGHT, SET
 from scratchwarp.scene import Material
 from scratchwarp.scratches import KINDS
 
-spec = importlib.util.spec_from_file_location("scenes", Path(__file__).parent.parent / "render" / "scenes.py")
-S = importlib.util.module_from_spec(spec)
-spec.loader.exec_module(S)
+from ..render import scenes as S
 
 
 def lines(plan):
