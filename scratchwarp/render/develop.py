@@ -30,7 +30,9 @@ def aovs(sums: Mapping[str, np.ndarray], scene: Scene, samples: int) -> dict[str
     normal = over_hits("normal")
     length = np.linalg.norm(normal, axis=-1, keepdims=True)
     normal = np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)
-    luminance = color @ np.array([0.2126, 0.7152, 0.0722], np.float32)
+    # not a matrix product: that sums in an order which depends on the shape, and a crop has the bits of the whole
+    luminance = np.float32(0.2126) * color[..., 0] + np.float32(0.7152) * color[..., 1]
+    luminance += np.float32(0.0722) * color[..., 2]
     spread = np.maximum(sums["square"] / good - luminance**2, 0.0)
     position = (over_hits("position").astype(np.float64) + scene.origin).astype(np.float32)
     return {
