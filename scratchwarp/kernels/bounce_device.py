@@ -9,7 +9,7 @@ from ..reflectance.profile_table_device import TableArrays, cone_direction, tabl
 from .geometry_device import Geometry, Surface
 from .key import KernelKey
 from .layers_device import make_gather
-from .lobe_device import Lobe, mirrored_at, power_heuristic
+from .lobe_device import Lobe, largest, mirrored_at, power_heuristic
 from .material_device import MaterialArrays, MaterialData
 from .world_device import LightSet, ScratchSet
 
@@ -25,12 +25,6 @@ class Scatter:
     pdf: float
     phi: float
     weight: wp.vec3
-
-
-@wp.func
-def largest(c: wp.vec3) -> float:
-    """The largest channel."""
-    return wp.max(wp.max(c[0], c[1]), c[2])
 
 
 def make_bounce(key: KernelKey, rotated, emission_at):

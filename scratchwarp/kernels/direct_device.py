@@ -24,12 +24,12 @@ from ..reflectance.profile_table_device import (
 )
 from .geometry_device import Geometry, interpolate_uv, intersect
 from .key import KernelKey
-from .lobe_device import Lobe, mirrored_at, power_heuristic
+from .lobe_device import Lobe, largest, mirrored_at, power_heuristic
 from .material_device import MaterialArrays
 from .world_device import LightSet
 
 PSI = wp.constant(0.5 * 3.14159265 / 180.0)  # half the support of one degree
-MOST_LAYERS_OF_GLASS = 32
+MOST_PASSES = 32  # transparent surfaces along one ray
 
 
 def models_of(key: KernelKey):
@@ -50,7 +50,7 @@ def make_transmittance(key: KernelKey, opacity_at):
             if wp.static(key.opacity):
                 start = origin
                 left = distance
-                for _i in range(wp.static(MOST_LAYERS_OF_GLASS)):
+                for _i in range(wp.static(MOST_PASSES)):
                     if result > 0.0:
                         s = intersect(g, start, direction, left)
                         if s.face < 0:
@@ -161,7 +161,7 @@ def make_direct(key: KernelKey, transmittance):
                         ls = wp.static(models[j].sample)(lights.arrays, light, p, u)
                         if ls.pdf != 0.0 and wp.dot(ls.wi, ng) > 0.0:
                             value = on_base(lobe, light, ls, ng)
-                            if wp.max(wp.max(value[0], value[1]), value[2]) > 0.0:
+                            if largest(value) > 0.0:
                                 total += wp.cw_mul(value, arrives(g, arrays, light, p, ls.wi, ls.distance))
                                 if wp.static(key.shadows):
                                     rays += float(light.shadow)
@@ -205,7 +205,7 @@ def make_direct(key: KernelKey, transmittance):
                                         value = wp.cw_mul(value, hit.radiance) * weight
                                     if wp.static(key.light_multipliers):
                                         value = value * light.specular
-                                    if wp.max(wp.max(value[0], value[1]), value[2]) > 0.0 and wp.dot(w, ng) > 0.0:
+                                    if largest(value) > 0.0 and wp.dot(w, ng) > 0.0:
                                         total += wp.cw_mul(value, arrives(g, arrays, light, p, w, far))
                                         if wp.static(key.shadows):
                                             rays += float(light.shadow)

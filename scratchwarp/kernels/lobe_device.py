@@ -54,6 +54,12 @@ def mirrored_at(direction: wp.vec3, ng: wp.vec3) -> wp.vec3:
 
 
 @wp.func
+def largest(c: wp.vec3) -> float:
+    """The largest channel."""
+    return wp.max(wp.max(c[0], c[1]), c[2])
+
+
+@wp.func
 def luminance(c: wp.vec3) -> float:
     """Y of linear Rec.709."""
     return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]

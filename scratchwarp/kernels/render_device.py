@@ -12,7 +12,7 @@ from ..reflectance.base_device import base_albedo
 from .base_at_device import make_base_at
 from .bounce_device import make_bounce
 from .camera_device import CameraData, footprint_step, lens_point, orthographic_ray, perspective_ray
-from .direct_device import make_direct, make_transmittance
+from .direct_device import MOST_PASSES, make_direct, make_transmittance
 from .film_device import FilmArrays, Window
 from .geometry_device import (
     Geometry,
@@ -24,7 +24,7 @@ from .geometry_device import (
     lifted,
 )
 from .key import KernelKey
-from .lobe_device import Lobe, luminance
+from .lobe_device import Lobe, largest, luminance
 from .material_device import MaterialArrays
 from .stamp import stamp
 from .world_device import LightSet, ScratchSet
@@ -36,7 +36,6 @@ FILTERS = {
 }
 # Sample dimensions: pair 0 the filter, 1 the lens, then for each surface OWN pairs and one a light.
 OWN_PAIRS = 4
-MOST_PASSES = 32  # transparent surfaces along one ray
 
 
 @lru_cache(maxsize=256)
@@ -235,8 +234,7 @@ def make_kernel(key: KernelKey):
                             keep = float(1.0)
                             if wp.static(key.path):
                                 if depth >= 4:
-                                    largest = wp.max(wp.max(step[0], step[1]), step[2])
-                                    keep = wp.clamp(largest / wp.max(camera.exposure, 1.0e-20), 0.02, 0.95)
+                                    keep = wp.clamp(largest(step) / wp.max(camera.exposure, 1.0e-20), 0.02, 0.95)
                             if out.alive == 1 and u_more[0] < keep:
                                 throughput = step / keep
                                 direction = out.direction
