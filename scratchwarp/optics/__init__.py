@@ -2,12 +2,11 @@
 
 Host, NumPy: ``fresnel`` (the reflectors and their reference formulas), ``metals`` and ``metal_tables`` (measured n, k),
 ``spectra`` and ``cie_tables`` (colorimetry). Device, Warp: ``frames_device``, ``fresnel_device``,
-``microfacets_device``,
-``sampling_device`` (front door to ``hash_device``, ``sobol_device`` and ``filters_device``). Importing this package
-does not import Warp.
+``microfacets_device``, ``sampling_device`` (front door to ``hash_device``, ``sobol_device`` and ``filters_device``).
+Importing this package does not import Warp.
 """
 
-import importlib
+from ..lazy import lazily
 
 _PUBLIC = {
     "Mirror": "fresnel",
@@ -15,21 +14,11 @@ _PUBLIC = {
     "Dielectric": "fresnel",
     "Schlick": "fresnel",
     "Reflector": "fresnel",
+    "fresnel": "",
+    "metals": "",
+    "spectra": "",
 }
-_MODULES = ("fresnel", "metals", "spectra")
 
-__all__ = [*sorted(_PUBLIC), *_MODULES]
+__all__ = sorted(_PUBLIC)
 
-
-def __getattr__(name: str):
-    if name in _MODULES:
-        return importlib.import_module(f"{__name__}.{name}")
-    if name in _PUBLIC:
-        value = getattr(importlib.import_module(f"{__name__}.{_PUBLIC[name]}"), name)
-        globals()[name] = value
-        return value
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-
-
-def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+__getattr__, __dir__ = lazily(__name__, _PUBLIC)

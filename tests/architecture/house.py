@@ -10,6 +10,7 @@ from pathlib import Path
 # Who may import whom: a room imports only from itself and from rooms before it.
 ROOMS = (
     "usd_schemas",
+    "lazy",
     "whole",
     "optics",
     "scene",

@@ -29,7 +29,7 @@ DOORS = {
 }
 
 # Rooms that know no kernels.
-WITHOUT_WARP = ("usd_schemas", "scene", "stage", "image", "whole", "frames", "pipelines", "arguments")
+WITHOUT_WARP = ("usd_schemas", "scene", "stage", "image", "lazy", "whole", "frames", "pipelines", "arguments")
 
 # (importer, imported): reason. Imports that go down the list of rooms.
 DOWNWARD: dict[tuple[str, str], str] = {}

@@ -5,7 +5,7 @@ perturbed normal pulls along; ``lobe_device`` value, sampling and density of the
 the same from NumPy; ``normal_map`` seamless maps of scratches.
 """
 
-import importlib
+from ...lazy import lazily
 
 _PUBLIC = {
     "DISTRIBUTIONS": "density",
@@ -27,15 +27,4 @@ _PUBLIC = {
 
 __all__ = sorted(_PUBLIC)
 
-
-def __getattr__(name: str):
-    if name not in _PUBLIC:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    module = importlib.import_module(f"{__name__}.{_PUBLIC[name]}")
-    value = getattr(module, name)
-    globals()[name] = value
-    return value
-
-
-def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+__getattr__, __dir__ = lazily(__name__, _PUBLIC)
