@@ -91,8 +91,9 @@ def _instance_arrays(
 
     scale = abs(np.linalg.det(linear)) ** (1 / 3)
     chosen = [mesh.uvs.get(uv_set(materials[m]), mesh.uvs.get("st")) for m in instance.materials]
-    if all(c is chosen[0] and c is not None for c in chosen):
-        uv = np.array(chosen[0][:, order])
+    first = chosen[0]
+    if first is not None and all(c is first for c in chosen):
+        uv = np.array(first[:, order])
     else:
         uv = _fallback_uv(mesh.points, mesh.triangles, scale)[:, order]
         for slot, coordinates in enumerate(chosen):
