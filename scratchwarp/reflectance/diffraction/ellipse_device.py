@@ -19,6 +19,7 @@ EXACT = wp.constant(2)
 
 _REACH = wp.constant(real(6.5))  # of the Gaussian: e^{-42}
 _PANELS = wp.constant(4)
+_PANEL = wp.constant(real(0.25))  # share of a panel
 _NODES = wp.constant(16)
 _SQRT_PI = wp.constant(real(1.7724538509055159))
 
@@ -77,7 +78,7 @@ def _exact_mean(e: Ellipse, offset: real, w: real, rules: Rules) -> real:
         hi = wp.min((y + _REACH * w) / e.h, ONE)
         if lo < hi:
             t0 = wp.asin(lo)
-            step = (wp.asin(hi) - t0) / real(_PANELS)
+            step = (wp.asin(hi) - t0) * _PANEL
             for i in range(_PANELS):
                 for j in range(_NODES):
                     tau = t0 + step * (real(i) + rule_node(rules, _NODES, j))

@@ -16,7 +16,7 @@ from .scratch_device import WaveScratch
 
 METHODS = ("slices", "closed-form", "closed-form-paper", "quadrature")
 _MOST_SLICES = 256
-_NODES_A_FRINGE = 24
+_NODES_A_FRINGE = 32
 
 
 def radiance(
@@ -90,7 +90,7 @@ def _on_device(
     q.table = device_array(where, int)
     q.method = int(method != "slices")
     q.slices = slices
-    rule = rules((1, 2, 3, 4, 8, slices, 8 * slices))
+    rule = rules((8, slices, (3 * slices + 3) // 4, (slices + 1) // 2, (slices + 3) // 4, 16 * slices))
     if isinstance(light, SphereLight):
         center = device_array(np.broadcast_to(light.center, (*shape, 3)).reshape(-1, 3), vec3)
         radius = device_array(np.broadcast_to(light.radius, shape).reshape(-1))

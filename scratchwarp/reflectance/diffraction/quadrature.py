@@ -67,7 +67,9 @@ class _Cap:
         if self.full:
             return np.array([-1.0, 1.0])
         from_u = np.arccos(np.clip(self.axis[0], -1.0, 1.0))
-        found = [np.cos(max(from_u - self.angle, 0.0)), np.cos(min(from_u + self.angle, np.pi))]
+        found = [np.cos(from_u - self.angle), np.cos(from_u + self.angle)]
+        found += [1.0] if from_u < self.angle else []
+        found += [-1.0] if from_u + self.angle > np.pi else []
         # its rim on the horizon: foot + t tangent, |.| = 1
         flat = self.axis[:2]
         length2 = flat @ flat

@@ -1,9 +1,10 @@
 """Radiance of one scratch under an area light of radiance 1, by slices of constant xi_1.
 
 L = 2 e^{-s_b^2 / sigma^2} integral over xi_1 of e^{-(sigma k xi_1)^2} g(xi_1), g the integral over xi_2 in closed form.
-The Gaussian is narrow, a few thousandths: Velinov et al. 2018 Eq. 27 takes g at xi_1 = 0, which fails where the light
-is not much wider. Here nodes lie where the Gaussian's distribution function is Gauss-Legendre, between the corners of
-the light.
+With x = sigma k xi_1 the Gaussian is e^{-x^2}. Velinov et al. 2018 Eq. 27 takes g at x = 0, which fails where the light
+ends within a few x. Here a light that covers |x| < 3 takes two or three Gauss-Hermite nodes. Else the range between two
+corners of the light is walked from where the Gaussian is greatest, in steps over which it falls by e^{-4} or so, with
+Gauss-Legendre nodes, fewer in each further step, and closer where the light begins or ends round.
 """
 
 from collections.abc import Callable
@@ -13,7 +14,7 @@ import warp as wp
 
 from .complex_device import power
 from .quadrature_device import Rules, rule_node, rule_weight
-from .real_device import HALF, ONE, PI, TWO, ZERO, real, vec3
+from .real_device import HALF, ONE, PI, TWO, ZERO, real
 from .scratch_device import along_amplitude, along_share, is_finite, offset_weight
 from .slice_device import Lobe, LobeTables, slice_value
 
@@ -23,47 +24,102 @@ CLOSED_FORM = wp.constant(1)
 """Method: the slice xi_1 = 0 alone, Eq. 27."""
 
 _SQRT_PI = wp.constant(real(1.7724538509055159))
-_WINDOW = wp.constant(real(9.0))  # e^{-81}: nothing comes from beyond
-_TAIL = wp.constant(real(1.0))
-_NARROW = wp.constant(real(0.25))
-_LEAST_STEP = wp.constant(real(0.04))
-_END_NODES = wp.constant(8)  # for each slice, where ends make the lobe wide and fringed
+_COVERED = wp.constant(real(3.0))  # erfc(3) = 2e-5
+_WELL_COVERED = wp.constant(real(4.5))
+_FEW = wp.constant(4)  # slices up to which accuracy is about 1e-3 and worth no more nodes
+_STEP = wp.constant(real(1.5))
+_FALL = wp.constant(real(1.5))
+_SHORT = wp.constant(real(0.8))  # what one step takes with both of its ends round
+_LAST = wp.constant(real(12.0))  # e^{-12}, of the greatest, is where few slices stop
+_LAST_FINE = wp.constant(real(30.0))
+_END_NODES = wp.constant(16)  # for each slice, where ends make the lobe wide and fringed
 
 
 @wp.struct
-class GaussNode:
-    """A node x of an integral with e^{-x^2}, and its weight."""
+class Range:
+    """Part of a light between u0 and u1, x0 and x1; whether the light ``begins`` at the one and ``ends`` at the other;
+    ``nearest``: the least |x| of the whole light."""
+
+    u0: real
+    u1: real
+    x0: real
+    x1: real
+    begins: int
+    ends: int
+    nearest: real
+    sharpness: real
+    slices: int
+
+
+@wp.struct
+class Node:
+    """Where in [0, 1], and with which weight."""
 
     x: real
     weight: real
 
 
 @wp.func
-def gauss_node(x0: real, width: real, t: real) -> GaussNode:
-    """The node at share ``t`` of the Gaussian between x0 and x0 + width; weights times those of a rule over [0, 1] add
-    up to the integral of e^{-x^2}.
-
-    Next to nothing of the Gaussian's distribution function is left in its tails, and of its difference in narrow
-    intervals: there the nodes follow e^{-2 x x0} or lie even.
-    """
-    r = GaussNode()
-    x1 = x0 + width
-    if width < _NARROW:
-        r.x = x0 + width * t
-        r.weight = width * wp.exp(-r.x * r.x)
-    elif x0 >= _TAIL or x1 <= -_TAIL:
-        near = wp.min(wp.abs(x0), wp.abs(x1))
-        share = ONE - wp.exp(-width * (TWO * near + width))
-        from_near = wp.where(x0 > ZERO, t, ONE - t)
-        x = wp.sqrt(near * near - wp.log(ONE - share * from_near))
-        r.x = wp.where(x0 > ZERO, x, -x)
-        r.weight = HALF * share * wp.exp(-near * near) / x
-    else:
-        v0 = wp.erf(x0)
-        v1 = wp.erf(x1)
-        r.x = wp.clamp(wp.erfinv(v0 + (v1 - v0) * t), x0, x1)
-        r.weight = HALF * _SQRT_PI * (v1 - v0)
+def edge_node(t: real, begins: int, ends: int) -> Node:
+    """The node at ``t`` moved so that it takes out the square roots with which a round light begins and ends: t^2, t^2
+    (3 - 2 t), ..."""
+    r = Node()
+    r.x = t
+    r.weight = ONE
+    if begins != 0 and ends != 0:
+        r.x = t * t * (real(3.0) - TWO * t)
+        r.weight = real(6.0) * t * (ONE - t)
+    elif begins != 0:
+        r.x = t * t
+        r.weight = TWO * t
+    elif ends != 0:
+        r.x = t * (TWO - t)
+        r.weight = TWO * (ONE - t)
     return r
+
+
+@wp.func
+def hermite_nodes(p: Range) -> int:
+    """Gauss-Hermite nodes that are enough where the range covers the Gaussian; 0: it does not, or more are wanted."""
+    reach = wp.min(-p.x0, p.x1)
+    n = int(0)
+    if p.slices <= _FEW and reach >= _COVERED:
+        n = wp.min(p.slices, wp.where(reach >= _WELL_COVERED, 2, 3))
+    return n
+
+
+@wp.func
+def hermite_node(n: int, i: int) -> Node:
+    """Node i of the Gauss-Hermite rule of n = 1, 2 or 3."""
+    r = Node()
+    if n == 1:
+        r.weight = _SQRT_PI
+    elif n == 2:
+        r.x = real(0.7071067811865476) * real(2 * i - 1)
+        r.weight = HALF * _SQRT_PI
+    else:
+        r.x = real(1.224744871391589) * real(i - 1)
+        r.weight = _SQRT_PI / wp.where(i == 1, real(1.5), real(6.0))
+    return r
+
+
+@wp.func
+def step_nodes(slices: int, step: int) -> int:
+    """Nodes in the first, second, third, ... step away from the greatest value."""
+    n = slices
+    if step == 1:
+        n = (3 * slices + 3) // 4
+    elif step == 2:
+        n = (slices + 1) // 2
+    elif step > 2:
+        n = (slices + 3) // 4
+    return n
+
+
+@wp.func
+def at_edge(p: Range, x: real) -> int:
+    """Whether the light begins or ends at x."""
+    return wp.where((x == p.x0 and p.begins != 0) or (x == p.x1 and p.ends != 0), 1, 0)
 
 
 def make_radiance(view: Any, breaks: Callable[..., Any], cut: Callable[..., Any]) -> Any:
@@ -71,37 +127,111 @@ def make_radiance(view: Any, breaks: Callable[..., Any], cut: Callable[..., Any]
     it begins, ends or has corners in u, and what a slice cuts out of it."""
 
     @wp.func
-    def piece(
-        light: view, lobe: Lobe, tables: LobeTables, rules: Rules, u0: real, u1: real, nodes: int, sharpness: real
+    def at(light: view, lobe: Lobe, tables: LobeTables, rules: Rules, p: Range, x: real) -> real:
+        u = wp.clamp(p.u0 + (x - p.x0) / p.sharpness, p.u0, p.u1)
+        return slice_value(cut(light, lobe, tables, rules, u), lobe)
+
+    @wp.func
+    def walk(
+        light: view, lobe: Lobe, tables: LobeTables, rules: Rules, p: Range, start: real, stop: real
     ) -> real:
-        """Integral of e^{-x^2} g over x = sigma k xi_1 between two u."""
+        """Integral of e^{-x^2} g from ``start``, nearest to 0, to ``stop`` on the same side."""
         total = real(0.0)
-        x0 = sharpness * (u0 + lobe.omega_o[0])
-        width = sharpness * (u1 - u0)
-        for i in range(nodes):
-            node = gauss_node(x0, width, rule_node(rules, nodes, i))
-            u = wp.clamp(u0 + (node.x - x0) / sharpness, u0, u1)
-            value = slice_value(cut(light, lobe, tables, rules, u), lobe)
-            total += rule_weight(rules, nodes, i) * node.weight * value
+        side = wp.where(stop > start, ONE, -ONE)
+        x = real(start)
+        step = int(0)
+        limit = wp.where(p.slices <= _FEW, _LAST, _LAST_FINE) + p.nearest * p.nearest
+        while side * (stop - x) > ZERO and x * x < limit:
+            width = _STEP
+            if side * x * _STEP > _FALL:
+                width = _FALL / (side * x)
+            # what is left is not worth a step of its own
+            if side * (stop - x) < real(1.3) * width:
+                width = side * (stop - x)
+                if at_edge(p, x) != 0 and at_edge(p, stop) != 0 and width > _SHORT:
+                    width = HALF * width
+            following = wp.where(side * (stop - x) > width, x + side * width, stop)
+            first = at_edge(p, x)
+            last = at_edge(p, following)
+            n = step_nodes(p.slices, step)
+            for i in range(n):
+                node = edge_node(rule_node(rules, n, i), first, last)
+                y = x + side * width * node.x
+                weight = rule_weight(rules, n, i) * node.weight * width * wp.exp(-y * y)
+                total += weight * at(light, lobe, tables, rules, p, y)
+            x = following
+            step += 1
         return total
 
     @wp.func
-    def piece_with_ends(
-        light: view, lobe: Lobe, tables: LobeTables, rules: Rules, u0: real, u1: real, nodes: int, scale: real
-    ) -> real:
-        """Integral of the finite scratch's |eta|^2 g over xi_1, with nodes even in atan(xi_1 / scale): the tails of a
-        scratch that ends fall with xi_1^-2."""
+    def ranged(light: view, lobe: Lobe, tables: LobeTables, rules: Rules, p: Range) -> real:
+        """Integral of e^{-x^2} g over the range."""
         total = real(0.0)
-        t0 = wp.atan((u0 + lobe.omega_o[0]) / scale)
-        width = wp.atan((u1 + lobe.omega_o[0]) / scale) - t0
+        if p.x0 >= ZERO or (p.x0 > -ONE and p.x1 - p.x0 < _STEP):
+            total = walk(light, lobe, tables, rules, p, p.x0, p.x1)
+        elif p.x1 <= ZERO or (p.x1 < ONE and p.x1 - p.x0 < _STEP):
+            total = walk(light, lobe, tables, rules, p, p.x1, p.x0)
+        else:
+            total = walk(light, lobe, tables, rules, p, ZERO, p.x1)
+            total += walk(light, lobe, tables, rules, p, ZERO, p.x0)
+        return total
+
+    @wp.func
+    def ranged_with_ends(
+        light: view, lobe: Lobe, tables: LobeTables, rules: Rules, p: Range, nodes: int, scale: real
+    ) -> real:
+        """Integral of the finite scratch's |eta|^2 g over x, with nodes even in atan(x / scale): the tails of a scratch
+        that ends fall with x^-2."""
+        total = real(0.0)
+        t0 = wp.atan(p.x0 / scale)
+        width = wp.atan(p.x1 / scale) - t0
         for i in range(nodes):
             slope = wp.tan(t0 + width * rule_node(rules, nodes, i))
-            xi1 = scale * slope
-            along = power(along_amplitude(lobe.scratch, lobe.wavelength, xi1))
-            u = wp.clamp(xi1 - lobe.omega_o[0], u0, u1)
-            value = slice_value(cut(light, lobe, tables, rules, u), lobe)
-            total += rule_weight(rules, nodes, i) * width * scale * (ONE + slope * slope) * along * value
+            x = scale * slope
+            along = power(along_amplitude(lobe.scratch, lobe.wavelength, x / p.sharpness))
+            weight = rule_weight(rules, nodes, i) * width * scale * (ONE + slope * slope)
+            total += weight * along * at(light, lobe, tables, rules, p, x)
         return total
+
+    @wp.func
+    def sliced(
+        light: view, lobe: Lobe, tables: LobeTables, rules: Rules, low: real, high: real, slices: int
+    ) -> real:
+        """Integral of the Gaussian, or of |eta|^2, and g over x from corner to corner."""
+        total = real(0.0)
+        s = lobe.scratch
+        p = Range()
+        p.sharpness = TWO * PI * s.sigma / lobe.wavelength
+        p.slices = slices
+        x0 = p.sharpness * (low + lobe.omega_o[0])
+        x1 = p.sharpness * (high + lobe.omega_o[0])
+        p.nearest = wp.max(wp.max(x0, -x1), ZERO)
+        finite = is_finite(s)
+        length = wp.min(s.end, TWO * s.sigma) - wp.max(s.start, -TWO * s.sigma)
+        scale = ONE + s.sigma / wp.max(length, real(0.01) * s.sigma)
+        p.u0 = low
+        p.begins = 1
+        while p.u0 < high:
+            following = breaks(light, s, p.u0)
+            p.u1 = wp.min(following[2], high)
+            p.ends = wp.where(p.u1 >= high, 1, 0)
+            p.x0 = p.sharpness * (p.u0 + lobe.omega_o[0])
+            p.x1 = p.x0 + p.sharpness * (p.u1 - p.u0)
+            n = hermite_nodes(p)
+            if finite:
+                total += ranged_with_ends(light, lobe, tables, rules, p, _END_NODES * slices, scale)
+            elif n > 0:
+                # nothing that matters is left for other ranges
+                total = ZERO
+                for i in range(n):
+                    node = hermite_node(n, i)
+                    total += node.weight * at(light, lobe, tables, rules, p, node.x)
+                break
+            else:
+                total += ranged(light, lobe, tables, rules, p)
+            p.u0 = p.u1
+            p.begins = 0
+        return total / p.sharpness
 
     @wp.func
     def radiance(
@@ -110,32 +240,15 @@ def make_radiance(view: Any, breaks: Callable[..., Any], cut: Callable[..., Any]
         """Radiance [1] towards omega_o; 0 from below the horizon."""
         r = real(0.0)
         s = lobe.scratch
-        sharpness = TWO * PI * s.sigma / lobe.wavelength
         extent = breaks(light, s, -TWO)
         if lobe.omega_o[2] > ZERO and extent[0] < extent[1]:
-            if method == CLOSED_FORM:
+            if method == SLICES:
+                r = sliced(light, lobe, tables, rules, extent[0], extent[1], slices)
+            else:
                 u = -lobe.omega_o[0]
                 if u > extent[0] and u < extent[1]:
                     value = slice_value(cut(light, lobe, tables, rules, u), lobe)
-                    r = value * along_share(s) * _SQRT_PI / sharpness
-            elif is_finite(s):
-                length = wp.min(s.end, TWO * s.sigma) - wp.max(s.start, -TWO * s.sigma)
-                scale = (ONE / s.sigma + ONE / wp.max(length, real(0.01) * s.sigma)) * lobe.wavelength / (TWO * PI)
-                u = real(extent[0])
-                while u < extent[1]:
-                    following = breaks(light, s, u)
-                    end = wp.min(following[2], extent[1])
-                    r += piece_with_ends(light, lobe, tables, rules, u, end, _END_NODES * slices, scale)
-                    u = end
-            else:
-                reach = _WINDOW / sharpness
-                u = wp.max(extent[0], -lobe.omega_o[0] - reach)
-                last = wp.min(extent[1], -lobe.omega_o[0] + reach)
-                while u < last:
-                    following = breaks(light, s, u + _LEAST_STEP / sharpness)
-                    end = wp.min(following[2], last)
-                    r += piece(light, lobe, tables, rules, u, end, slices, sharpness) / sharpness
-                    u = end
+                    r = value * along_share(s) * _SQRT_PI * lobe.wavelength / (TWO * PI * s.sigma)
         return TWO * offset_weight(s) * r
 
     return radiance

@@ -21,7 +21,7 @@ TABLE = wp.constant(2)
 NUMERIC = wp.constant(3)
 """Antiderivative: numerical, where the depth phase depends on psi."""
 
-_PANEL = wp.constant(1.0)  # cycles of phase for each 8 nodes: error 1e-9
+_PANEL = wp.constant(real(1.0))  # cycles of phase for each 8 nodes: error 1e-9
 _PANEL_NODES = wp.constant(8)
 
 
@@ -81,7 +81,7 @@ def integral_between(lobe: Lobe, tables: LobeTables, rules: Rules, u: real, psi0
     """Integral over xi_2 of the lobe with its angle-dependent depth, from psi0 to psi1."""
     s = wp.sqrt(wp.max((ONE - u) * (ONE + u), ZERO))
     cycles = (lobe.ratio + lobe.scratch.depth / lobe.wavelength) * s * wp.abs(psi1 - psi0)
-    panels = wp.max(int(wp.ceil(cycles / real(_PANEL))), 1)
+    panels = wp.max(int(wp.ceil(cycles / _PANEL)), 1)
     width = (psi1 - psi0) / real(panels)
     total = ZERO
     for i in range(panels):

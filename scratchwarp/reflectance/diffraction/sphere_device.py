@@ -54,13 +54,15 @@ def sphere_breaks(light: SphereView, s: WaveScratch, after: real) -> vec3:
     p = light.p
     a = light.half_angle
     from_axis = wp.atan2(wp.sqrt(p[1] * p[1] + p[2] * p[2]), p[0])
-    low = wp.where(from_axis + a >= PI, -ONE, wp.cos(from_axis + a))
-    high = wp.where(from_axis <= a, ONE, wp.cos(from_axis - a))
+    rim_low = wp.cos(from_axis + a)
+    rim_high = wp.cos(from_axis - a)
+    low = wp.where(from_axis + a >= PI, -ONE, rim_low)
+    high = wp.where(from_axis <= a, ONE, rim_high)
     following = real(_BEYOND)
-    if low > after:
-        following = low
-    if high > after:
-        following = wp.min(following, high)
+    if rim_low > after:
+        following = rim_low
+    if rim_high > after:
+        following = wp.min(following, rim_high)
     flat = wp.sqrt(p[0] * p[0] + p[1] * p[1])
     level = wp.cos(a)
     if flat > level:
