@@ -13,9 +13,8 @@ from numpy.typing import ArrayLike
 from scratchwarp.lights.light_device import LightHit, LightSample, Span
 from scratchwarp.lights.pack import PackedLights, pack_lights
 from scratchwarp.lights.query_kernels import hit_kernel, irradiance_kernel, sample_kernel, span_kernel
+from scratchwarp.reflectance.vectors import UNIT_TOLERANCE, directions, numbers, to_device, uniforms, vectors
 from scratchwarp.scene.light import Light
-
-_UNIT = 1e-3  # how far from 1 the length of a direction may be
 
 
 def _packed(light: Light | PackedLights) -> PackedLights:
@@ -25,31 +24,11 @@ def _packed(light: Light | PackedLights) -> PackedLights:
     return packed
 
 
-def _vectors(name: str, values: ArrayLike, size: int, direction: bool = False) -> np.ndarray:
-    array = np.asarray(values, np.float64)
-    if array.shape[-1:] != (size,):
-        raise ValueError(f"{name} has shape {list(array.shape)}, expected [..., {size}]")
-    if not np.isfinite(array).all():
-        raise ValueError(f"{name} is {array[~np.isfinite(array)][0]} somewhere; every value must be finite")
-    if direction:
-        length = np.linalg.norm(array, axis=-1, keepdims=True)
-        if np.any(np.abs(length - 1.0) > _UNIT):
-            worst = length.ravel()[np.argmax(np.abs(length - 1.0))]
-            raise ValueError(f"{name} has a vector of length {worst:g}; directions must be unit")
-        array = array / length
-    return array
-
-
 def _launch(
     kernel: Any, packed: PackedLights, arrays: list[np.ndarray], dtypes: list[Any], out: Any, *rest: Any
 ) -> Any:
     device = packed.arrays.triangles.device
-    lead = np.broadcast_shapes(*(a.shape[: a.ndim - (d is not float)] for a, d in zip(arrays, dtypes, strict=True)))
-    inputs: list[Any] = []
-    for a, d in zip(arrays, dtypes, strict=True):
-        tail = () if d is float else a.shape[-1:]
-        flat = np.broadcast_to(a, lead + tail).reshape((-1, *tail))
-        inputs.append(wp.array(np.ascontiguousarray(flat, np.float32), dtype=d, device=device))
+    lead, inputs = to_device(arrays, dtypes, device)
     result = wp.zeros(int(np.prod(lead)), dtype=out, device=device)
     lights = packed.lights[packed.kinds[0]]
     wp.launch(kernel, result.shape[0], inputs=[lights, packed.arrays, *inputs, *rest], outputs=[result], device=device)
@@ -63,11 +42,8 @@ def sample(light: Light | PackedLights, x: ArrayLike, u: ArrayLike) -> dict[str,
     without extent, whose radiance is then its irradiance across wi. Raises ValueError on another shape or range.
     """
     packed = _packed(light)
-    points, square = _vectors("x", x, 3), _vectors("u", u, 2)
-    if np.any((square < 0.0) | (square >= 1.0)):
-        raise ValueError(f"u lies in [{square.min():g}, {square.max():g}], expected [0, 1)")
-    square = np.minimum(square, 1.0 - 2.0**-24)
-    lead, out = _launch(sample_kernel(packed.models[0]), packed, [points, square], [wp.vec3, wp.vec2], LightSample)
+    arrays = [vectors("x", x, 3), uniforms("u", u, 2)]
+    lead, out = _launch(sample_kernel(packed.models[0]), packed, arrays, [wp.vec3, wp.vec2], LightSample)
     return {k: out[k].reshape(lead + out[k].shape[1:]) for k in ("wi", "distance", "radiance", "pdf")}
 
 
@@ -81,7 +57,7 @@ def hit(light: Light | PackedLights, x: ArrayLike, w: ArrayLike) -> dict[str, np
     lead, out = _launch(
         hit_kernel(packed.models[0]),
         packed,
-        [_vectors("x", x, 3), _vectors("w", w, 3, direction=True)],
+        [vectors("x", x, 3), directions("w", w)],
         [wp.vec3, wp.vec3],
         LightHit,
     )
@@ -98,17 +74,15 @@ def span(
     and n that are not orthogonal, or |sin_theta| > 1.
     """
     packed = _packed(light)
-    axis, normal = _vectors("u", u, 3, direction=True), _vectors("n", n, 3, direction=True)
-    sines = np.asarray(sin_theta, np.float64)
-    if not np.all(np.abs(sines) <= 1.0):
-        raise ValueError(f"sin_theta is {sines[~(np.abs(sines) <= 1.0)].ravel()[0]}, expected within [-1, 1]")
+    axis, normal = directions("u", u), directions("n", n)
+    sines = numbers("sin_theta", sin_theta, -1.0, 1.0)
     skew = np.abs((axis * normal).sum(-1)).max(initial=0.0)
-    if skew > _UNIT:
+    if skew > UNIT_TOLERANCE:
         raise ValueError(f"u and n have a cosine of {skew:g} between them; they must be orthogonal")
     lead, out = _launch(
         span_kernel(packed.models[0]),
         packed,
-        [_vectors("x", x, 3), axis, normal, sines],
+        [vectors("x", x, 3), axis, normal, sines],
         [wp.vec3, wp.vec3, wp.vec3, float],
         Span,
     )
@@ -129,7 +103,7 @@ def irradiance(
     lead, out = _launch(
         irradiance_kernel(packed.models[0]),
         packed,
-        [_vectors("x", x, 3), _vectors("n", n, 3, direction=True)],
+        [vectors("x", x, 3), directions("n", n)],
         [wp.vec3, wp.vec3],
         wp.vec3,
         samples,

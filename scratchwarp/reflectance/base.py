@@ -12,9 +12,9 @@ import warp as wp
 
 from . import base_arrays_device as device
 from .base_device import Base
+from .vectors import directions, to_device, uniforms
 
 FRESNELS = ("schlick", "conductor", "dielectric")
-_UNIT_TOLERANCE = 1e-3
 
 
 def _range(name: str, value: Any, low: float, high: float, shapes: tuple[tuple[int, ...], ...]) -> np.ndarray:
@@ -120,20 +120,9 @@ def preview_base(
     return BaseSurface(**values)
 
 
-def _directions(name: str, value: Any) -> np.ndarray:
-    w = np.asarray(value, np.float64)
-    if w.ndim < 1 or w.shape[-1] != 3:
-        raise ValueError(f"{name} must have shape [..., 3], got {w.shape}")
-    length = np.linalg.norm(w, axis=-1)
-    if not np.all(np.abs(length - 1.0) <= _UNIT_TOLERANCE):
-        raise ValueError(f"{name} must be unit within {_UNIT_TOLERANCE}, got length {length.flat[np.argmax(length)]}")
-    return w / length[..., None]
-
-
 def _evaluate(surface: BaseSurface, omega_i: Any, omega_o: Any, weights: tuple[float, float]) -> list[np.ndarray]:
-    wi, wo = np.broadcast_arrays(_directions("omega_i", omega_i), _directions("omega_o", omega_o))
-    shape, count = wi.shape[:-1], wi.size // 3
-    arrays: list[Any] = [wp.array(w.reshape(-1, 3).astype(np.float32), dtype=wp.vec3, device="cpu") for w in (wi, wo)]
+    shape, arrays = to_device([directions("omega_i", omega_i), directions("omega_o", omega_o)], [wp.vec3, wp.vec3])
+    count = len(arrays[0])
     value, pdf = wp.zeros(count, dtype=wp.vec3, device="cpu"), wp.zeros(count, dtype=float, device="cpu")
     base: Any = wp.array([surface.to_device()], dtype=Base, device="cpu")
     wp.launch(device.evaluate, count, inputs=[base, *arrays, *weights], outputs=[value, pdf], device="cpu")
@@ -165,14 +154,8 @@ def sample_base(
 
     ``omega_o`` and ``u`` broadcast. The mean of ``weight`` times the incident radiance is the reflected radiance.
     """
-    uniform = np.asarray(u, np.float64)
-    if uniform.shape[-1:] != (3,) or not np.all((uniform >= 0.0) & (uniform < 1.0)):
-        raise ValueError(f"u must have shape [..., 3] and lie in [0, 1), got shape {uniform.shape}")
-    wo, uniform = np.broadcast_arrays(_directions("omega_o", omega_o), uniform)
-    shape, count = wo.shape[:-1], wo.size // 3
-    below_one = np.minimum(uniform.reshape(-1, 3).astype(np.float32), np.float32(1.0 - 2.0**-24))
-    views = wo.reshape(-1, 3).astype(np.float32)
-    arrays: list[Any] = [wp.array(a, dtype=wp.vec3, device="cpu") for a in (views, below_one)]
+    shape, arrays = to_device([directions("omega_o", omega_o), uniforms("u", u, 3)], [wp.vec3, wp.vec3])
+    count = len(arrays[0])
     wi, weight = (wp.zeros(count, dtype=wp.vec3, device="cpu") for _ in range(2))
     pdf, delta = wp.zeros(count, dtype=float, device="cpu"), wp.zeros(count, dtype=int, device="cpu")
     base: Any = wp.array([surface.to_device()], dtype=Base, device="cpu")

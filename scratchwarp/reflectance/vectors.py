@@ -52,7 +52,9 @@ def uniforms(name: str, values: ArrayLike, size: int) -> np.ndarray:
     return np.minimum(array, 1.0 - 2.0**-24)
 
 
-def to_device(arrays: Sequence[np.ndarray], dtypes: Sequence[Any]) -> tuple[tuple[int, ...], list[Any]]:
+def to_device(
+    arrays: Sequence[np.ndarray], dtypes: Sequence[Any], device: Any = "cpu"
+) -> tuple[tuple[int, ...], list[Any]]:
     """(leading shape, flat device arrays) of arrays that broadcast; a dtype of vectors keeps the last axis."""
     tails = [() if d in (float, int, wp.float64) else (d._length_,) for d in dtypes]
     leads = [a.shape[: a.ndim - len(t)] for a, t in zip(arrays, tails, strict=True)]
@@ -62,4 +64,4 @@ def to_device(arrays: Sequence[np.ndarray], dtypes: Sequence[Any]) -> tuple[tupl
         raise ValueError(f"leading shapes {', '.join(str(list(s)) for s in leads)} do not broadcast") from None
     given = zip(arrays, dtypes, tails, strict=True)
     full = [(np.ascontiguousarray(np.broadcast_to(a, lead + t)).reshape(-1, *t), d) for a, d, t in given]
-    return lead, [wp.array(a, dtype=d, device="cpu") for a, d in full]
+    return lead, [wp.array(a, dtype=d, device=device) for a, d in full]
