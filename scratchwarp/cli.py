@@ -29,6 +29,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         return status
     except KeyboardInterrupt:
         kept = getattr(args, "checkpoint", None)
+        if kept and "#" not in kept and not Path(kept).exists():  # nothing was rendered yet
+            kept = None
         _say(f"interrupted; {f'{kept} is kept, add --resume to go on' if kept else 'no file was left half written'}")
         return 130
     except BrokenPipeError:  # the reader, such as head, has seen enough

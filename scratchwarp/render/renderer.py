@@ -126,6 +126,8 @@ def render(
         plan.size,
         plan.window,
         jobs[0],
+        plan.layers,
+        plan.tables,
         built.key,
         settings.filter_width,
         settings.max_depth,
@@ -134,8 +136,13 @@ def render(
     finished = np.zeros(len(jobs), bool)
     views = {name: getattr(film, name).numpy() for name in _SUMS} if on_cpu else {}
     if checkpoint and resume:
+        empty = {name: view[0, 0].copy() for name, view in views.items()}
         stored = checkpoints.load(checkpoint, key, views)
         finished = finished if stored is None else stored
+        for tile in (tile for tile, is_whole in zip(jobs, finished, strict=True) if not is_whole):
+            # it may have been half done when the checkpoint was written
+            for name, view in views.items():
+                view[tile.y : tile.y + tile.height, tile.x : tile.x + tile.width] = empty[name]
     position = {tile: i for i, tile in enumerate(jobs)}
     state = {"done": sum(t.width * t.height for t in jobs if finished[position[t]]) * spp, "launches": 0}
     last = [time.perf_counter()]
