@@ -143,9 +143,13 @@ def test_interrupt_is_130_and_leaves_the_old_image(renderer, tmp_path, capsys):
     renderer.during_render = interrupt
     out = tmp_path / "a.exr"
     out.write_text("old")
-    assert status("render", "a.usda", out, "--checkpoint", tmp_path / "c") == 130
-    assert "--resume" in capsys.readouterr().err
+    kept = tmp_path / "c"
+    assert status("render", "a.usda", out, "--checkpoint", kept) == 130
+    assert "--resume" not in capsys.readouterr().err, "there is nothing to go on from"
     assert out.read_text() == "old" and list(tmp_path.iterdir()) == [out]
+    kept.write_text("tiles")
+    assert status("render", "a.usda", out, "--checkpoint", kept) == 130
+    assert "--resume" in capsys.readouterr().err
 
 
 def test_explain(renderer, capsys):
