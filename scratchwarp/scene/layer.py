@@ -19,7 +19,11 @@ FRESNELS = ("exact", "schlick", "lazanyi", "lazanyiError", "mirror")
 class Profile:
     """A ScratchProfile prim: normalised, x in widths over [0, 1], z in depths (0 surface, -1 deepest, rims > 0).
 
-    ``parameters`` holds the shape's own attributes (for example ``floorWidth``) by their schema name.
+    Attributes:
+        path: prim path. shape: one of ``SHAPES``; points: (x, z) of shape "points", shape [n, 2].
+        rim: height of the ridges on either side, in depths; rim_width: what each takes of the width.
+        periodic: the profile repeats without flat ground between.
+        parameters: the shape's own attributes (for example ``floorWidth``) by their schema name.
     """
 
     path: str
@@ -43,7 +47,8 @@ class Layer:
     """One layer of scratches. Lengths in micrometres (space surface) or fractions of the uv square (space uv).
 
     Attributes:
-        name: instance name; prim: path of the Material, for messages.
+        name: instance name; prim: path of the Material, for messages; profile: the cross-section.
+        order: layers cut in ascending order, ties by name.
         model, distribution, space, material, fresnel: tokens of the schema.
         width, depth, length: mean scratch size; depth is in the unit of width.
         coverage: area fraction in [0, 1] (statistical distributions); density: scratches a square millimetre
@@ -51,11 +56,11 @@ class Layer:
         angle, angle_spread: radians, counter-clockwise from the surface's u.
         curvature: radians of turn for each ``length`` travelled along the scratch.
         offset: shift of the pattern in cells, shape [2]; center: uv of concentric and spiral patterns, shape [2].
+        seed: of the layout; width_variation, depth_variation: relative, each scratch within 1 -+ this.
         metal, eta, k, ior, diffuse_color: of the scratch's own material when ``material`` is not inherit.
         curves: indices into ``Scene.curves``.
         patterns: overlaid sets of parallel scratches of a worley layer, each turned within ``angle_spread``.
         cross_angle: radians between the two sets of a crosshatch.
-        profile: the cross-section; None only when the distribution or model needs none.
         extra: further attributes by schema name, as authored.
     """
 
