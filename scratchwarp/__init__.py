@@ -9,8 +9,6 @@ Public names load on first use, so that ``import scratchwarp`` imports neither U
 """
 
 import importlib
-import sys
-import types
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -22,7 +20,7 @@ __version__ = "0.1.0"
 _PUBLIC = {
     "read": ("scratchwarp.pipeline", "read"),
     "make_plan": ("scratchwarp.plan", "make_plan"),
-    "render": ("scratchwarp.render", "render"),
+    "render": ("scratchwarp.render", None),  # the room, which renders when it is called
     "write": ("scratchwarp.image", "write"),
     "Settings": ("scratchwarp.scene", "Settings"),
     "Scene": ("scratchwarp.scene", "Scene"),
@@ -54,15 +52,3 @@ def __getattr__(name: str):
 
 def __dir__() -> list[str]:
     return sorted({*globals(), *_PUBLIC})
-
-
-class _Package(types.ModuleType):
-    """Keeps ``scratchwarp.render`` the function when Python, importing the room, would make it the room."""
-
-    def __setattr__(self, name: str, value: object) -> None:
-        if isinstance(value, types.ModuleType) and _PUBLIC.get(name, (None, None))[1] is not None:
-            return
-        super().__setattr__(name, value)
-
-
-sys.modules[__name__].__class__ = _Package

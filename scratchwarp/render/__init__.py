@@ -8,11 +8,27 @@ Files:
     checkpoint  finished tiles on disk
     progress    the progress bar
 
-``scratchwarp.render`` is the function; ``from scratchwarp.render import Film`` finds this room all the same.
+The room can be called like its function: ``scratchwarp.render(scene, plan)``.
 """
 
+import sys
+import types
+from typing import Any
+
+from ..plan import EffectPlan
+from ..scene import Scene
 from .film import AOVS, Film
 from .progress import bar
 from .renderer import render
 
 __all__ = ["AOVS", "Film", "bar", "render"]
+
+
+class _Room(types.ModuleType):
+    """A module that renders when it is called."""
+
+    def __call__(self, scene: Scene, plan: EffectPlan, **options: Any) -> Film:
+        return render(scene, plan, **options)
+
+
+sys.modules[__name__].__class__ = _Room
