@@ -41,5 +41,5 @@ class Renderer:
 def renderer(monkeypatch):
     fake = Renderer()
     for name in ("read", "make_plan", "render"):
-        monkeypatch.setitem(vars(sw), name, getattr(fake, name))
+        monkeypatch.setattr(sw, name, getattr(fake, name))
     return fake
