@@ -8,6 +8,9 @@ if TYPE_CHECKING:
     from .scene import Settings
 
 
+_PURPOSES = ("default", "render", "proxy", "guide")
+
+
 class UsageError(Exception):
     """The command line asks for something that does not exist; exit status 2."""
 
@@ -83,10 +86,14 @@ def settings(args: argparse.Namespace) -> "Settings":
 
 
 def reading(args: argparse.Namespace) -> dict[str, Any]:
-    """Keywords of ``read`` that say which part of the stage is meant."""
+    """Keywords of ``read`` that say which part of the stage is meant; UsageError on a purpose that is none."""
+    purposes = tuple(dict.fromkeys(("default", "render", *listed(args.purposes))))
+    for name in purposes:
+        if name not in _PURPOSES:
+            raise UsageError(f"--purposes {name!r} is not one of {', '.join(_PURPOSES)}")
     return {
         "camera": args.camera,
-        "purposes": tuple(dict.fromkeys(("default", "render", *listed(args.purposes)))),
+        "purposes": purposes,
         "session_layer": args.sessionLayer,
         "mask": listed(args.mask) or None,
         "render_settings": args.renderSettingsPrimPath,
@@ -109,11 +116,21 @@ def cross_sections(args: argparse.Namespace) -> list[tuple[str, Any, Any]]:
         if not tables:
             raise ValueError(f"{args.source}: no scratch layer of it needs a table")
         found = [(", ".join(table.users), table.profile, table.fresnel) for table in tables]
-        return [row for row in found if args.layer is None or args.layer in row[0]] or found
-    fresnel = optics.Conductor(*optics.metals.rgb(args.metal)) if args.metal else None
-    if args.ior is not None:
-        fresnel = optics.Dielectric(args.ior)
+        meant = [row for row in found if args.layer is None or args.layer in row[0]]
+        if not meant:
+            raise UsageError(f"--layer {args.layer!r} is none of {'; '.join(name for name, _, _ in found)}")
+        return meant
+    if args.metal and args.ior is not None:
+        raise UsageError("--metal and --ior exclude each other")
+    try:
+        fresnel = optics.Conductor(*optics.metals.rgb(args.metal)) if args.metal else None
+        if args.ior is not None:
+            fresnel = optics.Dielectric(args.ior)
+    except ValueError as error:
+        raise UsageError(f"--metal or --ior: {error}") from None
     if Path(args.source).is_file():
+        if not Path(args.source).read_bytes().strip():
+            raise ValueError(f"{args.source}: the file is empty; write a point (x, z) in each line")
         try:
             points = np.loadtxt(args.source, delimiter="," if args.source.endswith(".csv") else None, ndmin=2)
             return [(args.source, profiles.Profile(points, isolated=args.isolated), fresnel)]
@@ -122,7 +139,10 @@ def cross_sections(args: argparse.Namespace) -> list[tuple[str, Any, Any]]:
     if args.source not in profiles.shape_names():
         known = ", ".join(profiles.shape_names())
         raise UsageError(f"{args.source!r} is neither a USD stage nor a file of points nor one of {known}")
-    profile = profiles.shape(args.source, depth=args.depth, isolated=args.isolated)
+    try:
+        profile = profiles.shape(args.source, depth=args.depth, isolated=args.isolated)
+    except ValueError as error:
+        raise UsageError(str(error)) from None
     return [(args.source, profile, fresnel)]
 
 
@@ -132,9 +152,13 @@ def listed(text: str) -> tuple[str, ...]:
 
 
 def _effect(text: str) -> tuple[str, bool]:
+    from .plan.effects import EFFECTS
+
     name, _, switch = text.partition("=")
     if not name or switch not in ("on", "off"):
         raise UsageError(f"--effect {text!r} is not NAME=on or NAME=off")
+    if name not in EFFECTS:
+        raise UsageError(f"--effect {name!r} is not one of {', '.join(EFFECTS)}")
     return name, switch == "on"
 
 
@@ -152,7 +176,8 @@ _EXAMPLES = {
   scratchwarp simulate groove.csv groove.png --metal gold --resolution 128
   scratchwarp simulate ball.usda tables.##.npz""",
     "validate": "scratchwarp validate ball.usda\n  scratchwarp validate ball.usda --strict --json",
-    "view": "scratchwarp view ball.usda\n  scratchwarp view ball.usda --screenshot look.png --frame 12",
+    "view": "scratchwarp view ball.usda\n  scratchwarp view ball.usda --screenshot look.png --frame 12\n"
+    "  scratchwarp view ball.usda --profile hairlines\n  scratchwarp view quartic",
     "cache": "scratchwarp cache\n  scratchwarp cache --clear",
     "demo": "scratchwarp demo out\n  scratchwarp demo out -w 320 --spp 4",
 }
@@ -161,7 +186,7 @@ _EXAMPLES = {
 def parser() -> argparse.ArgumentParser:
     """The whole command line: ``args.command`` is the name of the function of ``cli`` to run."""
     from . import __version__
-    from .viewers import KEYS
+    from .viewers import KEYS, PROFILE_KEYS
 
     whole = argparse.ArgumentParser(
         prog="scratchwarp",
@@ -229,8 +254,13 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("--strict", "-t", action="store_true", help="warnings count as errors")
 
     made = command("view", "show a stage, its scratches, profiles and tables in a window")
-    made.epilog = "\n".join([str(made.epilog), "", "keys:", *(f"  {key}  {what}" for key, what in KEYS.items())])
-    made.add_argument("stage", metavar="STAGE", help="USD file")
+    for title, keys in (("keys", KEYS), ("keys with --profile", PROFILE_KEYS)):
+        made.epilog = "\n".join([f"{made.epilog}\n", f"{title}:", *(f"  {key}  {what}" for key, what in keys.items())])
+    made.add_argument("stage", metavar="STAGE|SHAPE", help="USD file, or the name of a shape: its profile alone")
+    made.add_argument(
+        "--profile", nargs="?", const="", metavar="LAYER", help="a layer's profile alone, with sliders [first]"
+    )
+    made.add_argument("--depth", type=float, help="of that profile to begin with, in widths")
     made.add_argument("--screenshot", metavar="FILE", help="write this picture instead, without a display")
     made.add_argument("--frame", "-f", metavar="N", help="time code [the earliest]")
     made.add_argument("--camera", "-cam", metavar="NAME", help="camera prim, by path or name")

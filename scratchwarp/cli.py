@@ -168,9 +168,9 @@ def validate(args: Command) -> int:
 
 
 def view(args: Command) -> int:
-    """Open a window on STAGE, or write the picture of one."""
+    """Open a window on STAGE or on one profile, or write the picture of one."""
+    from . import profiles, viewers
     from .frames import parse_frames
-    from .viewers import view as show
 
     try:
         frames = parse_frames(args.frame) if args.frame else [None]
@@ -180,7 +180,16 @@ def view(args: Command) -> int:
         raise UsageError(f"--frame {args.frame!r} is {len(frames)} frames; a window shows one")
     options = {"width": args.imageWidth, "spp": args.spp}
     given = {name: value for name, value in options.items() if value is not None}
-    show(args.stage, args.screenshot, frame=frames[0], camera=args.camera, **given)
+    if args.profile is None and args.stage not in profiles.shape_names():
+        if args.depth is not None:
+            raise UsageError("--depth is of one profile; add --profile")
+        viewers.view(args.stage, args.screenshot, frame=frames[0], camera=args.camera, **given)
+        return 0
+    if given:
+        raise UsageError("--imageWidth and --spp are of the rendered image, which the window of a profile has not")
+    viewers.view_profile(
+        args.stage, args.screenshot, layer=args.profile or "", depth=args.depth, frame=frames[0], camera=args.camera
+    )
     return 0
 
 

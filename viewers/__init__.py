@@ -7,9 +7,13 @@ Files:
     camera         the camera's frustum and the lights
     profiles       each layer's cross-section
     tables         each layer's simulated table
+    cross_sections profiles whose numbers can be turned
+    live_profile   one of them in a window of its own, with sliders
     image          the rendered image
     colors         one colour for each layer
     display        pyvista, and whether windows can be drawn here
+    sheet, marks   pictures, lines and words that are changed in place
+    sliders        a slider for a number
     window         all of it together, and the keys of the window
 
 ``view`` opens the window; importing this package imports neither pyvista nor pxr nor Warp.
@@ -18,7 +22,7 @@ Files:
 from pathlib import Path
 from typing import Any
 
-__all__ = ["KEYS", "view"]
+__all__ = ["KEYS", "PROFILE_KEYS", "view", "view_profile"]
 
 # key -> what it does in the window, as --help prints it.
 KEYS = {
@@ -27,10 +31,33 @@ KEYS = {
     "l": "camera and lights on or off",
     "t": "triangle edges on or off",
     "n": "the next layers in the plots",
-    "i": "render again, seen from where the window looks",
+    "m": "the depth slider moves the next layer",
+    "i": "render again, with these depths and seen from where the window looks",
     "o": "look through the stage's camera again",
     "q": "close the window",
 }
+
+# The same for the window of one profile.
+PROFILE_KEYS = {
+    "n": "the next layer of the stage, or the next shape",
+    "k": "the next shape at the same depth",
+    "g": "repeated for ever, or alone in flat ground",
+    "q": "close the window",
+}
+
+
+def view_profile(source: Path | str, screenshot: Path | str | None = None, **options: Any) -> None:
+    """Show one cross-section with sliders for its numbers, and its table as it is simulated again at every step.
+
+    ``source`` is a stage or the name of a shape. ``options`` are those of ``scratchwarp.viewers.live_profile.view``:
+    layer, depth, frame, camera, size. Raises as ``view`` does.
+    """
+    from .display import pyvista
+
+    pyvista()
+    from .live_profile import view as show
+
+    show(source, screenshot, **options)
 
 
 def view(stage_path: Path | str, screenshot: Path | str | None = None, **options: Any) -> None:

@@ -5,7 +5,10 @@ import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
+
+from scratchwarp.whole import whole
 
 WINDOW = "VTK_DEFAULT_OPENGL_WINDOW"
 OFF_SCREEN = (("EGL", "vtkEGLRenderWindow"), ("OSMesa", "vtkOSOpenGLRenderWindow"))
@@ -40,3 +43,33 @@ def drawing(off_screen: bool) -> Iterator[None]:
         yield
     finally:
         os.environ.pop(WINDOW, None)
+
+
+@contextmanager
+def canvas(off_screen: bool, size: tuple[int, int], shape: tuple[int, int] = (1, 1)) -> Iterator[Any]:
+    """A pyvista plotter of ``size`` pixels with rows and columns of renderers, closed for good afterwards.
+
+    OSError as ``drawing`` has it.
+    """
+    pv = pyvista()
+    with drawing(off_screen):
+        plotter = pv.Plotter(shape=shape, off_screen=off_screen, window_size=list(size), border=False)
+        try:
+            yield plotter
+        finally:
+            plotter.close()
+            plotter.deep_clean()
+
+
+def check_writable(path: Path) -> None:
+    """Say what is wrong with ``path`` before anything is read or rendered: ValueError or OSError."""
+    if path.suffix.lower() not in (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff"):
+        raise ValueError(f"{path}: a screenshot ends in .png, .jpg, .bmp or .tif")
+    if not path.parent.is_dir():
+        raise OSError(f"{path}: the folder {path.parent} does not exist")
+
+
+def write(plotter: Any, path: Path) -> None:
+    """Write what the plotter shows, whole or not at all."""
+    with whole(path) as draft:
+        plotter.screenshot(str(draft))

@@ -7,7 +7,7 @@ import numpy as np
 
 from scratchwarp.scene import Camera, Scene, Settings
 
-from .tables import plane
+from .sheet import Sheet
 
 
 def picture(scene: Scene, width: int = 320, spp: int = 4, camera: Camera | None = None) -> np.ndarray:
@@ -24,7 +24,7 @@ def picture(scene: Scene, width: int = 320, spp: int = 4, camera: Camera | None 
 
 def add(plotter: Any, pixels: np.ndarray) -> None:
     """Fill the active renderer with the image."""
-    plotter.add_mesh(plane(pixels, 0.0, 0.0, 1.0), scalars="rgb", rgb=True, lighting=False, name="rendered")
+    Sheet(plotter, pixels, 0.0, 0.0, 1.0, name="rendered")
     plotter.enable_parallel_projection()
     plotter.view_xy()
     plotter.camera.tight(padding=0.02, adjust_render_window=False)

@@ -1,4 +1,7 @@
-"""Each layer's cross-section, to scale in micrometres."""
+"""Each layer's cross-section; how wide and deep it is stands below.
+
+Heights are drawn by their square root, so that shallow ones are seen, and one as deep as it is wide fills its cell.
+"""
 
 from typing import Any
 
@@ -7,52 +10,48 @@ import numpy as np
 from scratchwarp.plan.profiles import cross_section
 from scratchwarp.scene import Layer
 
-from .colors import TEXT, Shown
-from .display import pyvista
+from .colors import Shown
+from .marks import Line, look_at, word
+
+HEIGHT = 0.55  # of a cell, whose width is 1
+PITCH = (1.15, 0.95)
 
 
 def micrometres(layer: Layer) -> np.ndarray:
     """The outline [n, 2] of a layer: x from the middle, z from the surface, both in micrometres (space uv: in uv)."""
-    line = cross_section(layer.profile, layer).polyline()
+    line = cross_section(layer.profile, layer).polyline(4)
     return (line - (0.5 * (line[0, 0] + line[-1, 0]), 0.0)) * layer.width
 
 
-def add(plotter: Any, items: list[Shown]) -> list[Any]:
-    """Fill the active renderer with one plot for each layer; returns the charts."""
-    pv = pyvista()
-    charts = []
-    for item, (x, y, width, height) in zip(items, cells(len(items)), strict=True):
-        y, height = 0.93 * y, 0.93 * height  # room for the title of all
-        chart = pv.Chart2D(size=(0.98 * width, 0.97 * height), loc=(x + 0.01 * width, y + 0.015 * height))
-        line = micrometres(item.layer)
+class Plot:
+    """One layer's outline and its size, with the lower left corner at (x, y)."""
+
+    def __init__(self, plotter: Any, item: Shown, x: float, y: float) -> None:
+        self.x, self.y = x, y
+        word(plotter, item.title, x + 0.5, y + HEIGHT + 0.13)
+        self.size = word(plotter, "", x + 0.5, y - 0.1, 10)
+        self.line = Line(plotter, item.color)
+        self.draw(item.layer)
+
+    def draw(self, layer: Layer) -> None:
+        """Show the layer as it is now, with the ground beside it."""
+        line = micrometres(layer)
         ground = 0.15 * np.ptp(line[:, 0])
-        x_values = np.concatenate([[line[0, 0] - ground], line[:, 0], [line[-1, 0] + ground]])
-        z_values = np.concatenate([[0.0], line[:, 1], [0.0]])
-        chart.background_color = (0, 0, 0, 0)
-        chart.border_color = (0, 0, 0, 0)
-        chart.line(x_values, z_values, color=item.color, width=2.5)
-        depth = max(float(np.ptp(z_values)), 1e-9)
-        chart.x_range = [float(x_values[0]), float(x_values[-1])]
-        chart.y_range = [float(z_values.min()) - 0.15 * depth, float(z_values.max()) + 0.25 * depth]
-        chart.title = item.title
-        for axis, label in ((chart.x_axis, "um"), (chart.y_axis, "")):
-            axis.label = label if item.layer.space == "surface" else ""
-            axis.grid = False
-            axis.tick_count = 3
-            axis.label_size = axis.tick_label_size = 10
-            for part in (axis.GetTitleProperties(), axis.GetLabelProperties(), chart.GetTitleProperties()):
-                part.SetColor(*pv.Color(TEXT).float_rgb)
-            axis.pen.color = TEXT
-            axis.SetNotation(2)  # fixed point
-            axis.SetPrecision(1)
-        chart.GetTitleProperties().SetFontSize(12)
-        plotter.add_chart(chart)
-        charts.append(chart)
-    return charts
+        line = np.concatenate([[[line[0, 0] - ground, 0.0]], line, [[line[-1, 0] + ground, 0.0]]])
+        low, high = line.min(axis=0), line.max(axis=0)
+        wide, tall = np.maximum(high - low, 1e-9)
+        stretched = (1.0 / wide, HEIGHT / tall * min(1.0, np.sqrt(tall / wide)))
+        self.line.draw((self.x, self.y + HEIGHT) + (line - (low[0], high[1])) * stretched)
+        unit = "um" if layer.space == "surface" else "of the uv square"
+        self.size.input = f"{layer.width:.3g} wide, {layer.depth:.3g} deep, {unit}"
 
 
-def cells(count: int) -> list[tuple[float, float, float, float]]:
-    """(x, y, width, height) in [0, 1] of ``count`` equal cells, first at the top left, as square as it goes."""
-    columns = max(1, int(np.ceil(np.sqrt(count))))
-    rows = max(1, int(np.ceil(count / columns)))
-    return [((i % columns) / columns, 1 - (i // columns + 1) / rows, 1 / columns, 1 / rows) for i in range(count)]
+def add(plotter: Any, items: list[Shown]) -> list[Plot]:
+    """Fill the active renderer, but for a strip below, with one plot for each layer; returns the plots."""
+    columns = max(1, int(np.ceil(np.sqrt(len(items)))))
+    rows = max(1, -(-len(items) // columns))
+    plots = [Plot(plotter, item, PITCH[0] * (i % columns), -PITCH[1] * (i // columns)) for i, item in enumerate(items)]
+    bottom = -PITCH[1] * (rows - 1) - 0.2
+    high = 0.95 - bottom
+    look_at(plotter, -0.1, PITCH[0] * columns, bottom - 0.2 * high, 0.95)
+    return plots

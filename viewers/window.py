@@ -1,5 +1,6 @@
 """The window: meshes with directions and scratches, the rendered image, each layer's profile and table."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -7,12 +8,14 @@ import numpy as np
 
 import scratchwarp as sw
 from scratchwarp.scene import Camera, Scene
-from scratchwarp.whole import whole
 
 from . import camera as camera_view
 from . import curves, directions, image, meshes, profiles, tables
 from .colors import BACKGROUND, TEXT, Shown, shown
-from .display import drawing, pyvista
+from .cross_sections import Knob, rescratched
+from .display import canvas, check_writable, write
+from .sheet import Sheet
+from .sliders import slider
 
 PAGE = 12  # layers that the plots show at once
 
@@ -57,33 +60,13 @@ def show(
     """As ``view`` for a scene that is read."""
     if screenshot is not None:
         check_writable(Path(screenshot))
-    pv = pyvista()
-    with drawing(screenshot is not None):
-        plotter = pv.Plotter(shape=(2, 2), off_screen=screenshot is not None, window_size=list(size), border=False)
-        try:
-            window = Window(plotter, scene, width, spp, page)
-            if screenshot is None:
-                window.connect()
-                plotter.show(title=f"scratchwarp: {scene.path}", auto_close=False)
-            else:
-                write(plotter, Path(screenshot))
-        finally:
-            plotter.close()
-            plotter.deep_clean()
-
-
-def check_writable(path: Path) -> None:
-    """Say what is wrong with ``path`` before anything is read or rendered: ValueError or OSError."""
-    if path.suffix.lower() not in (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff"):
-        raise ValueError(f"{path}: a screenshot ends in .png, .jpg, .bmp or .tif")
-    if not path.parent.is_dir():
-        raise OSError(f"{path}: the folder {path.parent} does not exist")
-
-
-def write(plotter: Any, path: Path) -> None:
-    """Write what the plotter shows, whole or not at all."""
-    with whole(path) as draft:
-        plotter.screenshot(str(draft))
+    with canvas(screenshot is not None, size, (2, 2)) as plotter:
+        window = Window(plotter, scene, width, spp, page)
+        if screenshot is None:
+            window.connect()
+            plotter.show(title=f"scratchwarp: {scene.path}", auto_close=False)
+        else:
+            write(plotter, Path(screenshot))
 
 
 class Window:
@@ -94,7 +77,9 @@ class Window:
         self.layers: list[Shown] = shown(scene)
         self.page = page % max(1, -(-len(self.layers) // PAGE))
         self.groups: dict[str, list[Any]] = {}
-        self.charts: list[Any] = []
+        self.plots: list[profiles.Plot] = []
+        self.sheets: list[Sheet] = []
+        self.chosen = 0
         for row, column in ((0, 0), (0, 1), (1, 0), (1, 1)):
             plotter.subplot(row, column)
             plotter.set_background(BACKGROUND)
@@ -108,6 +93,7 @@ class Window:
             self.plotter.add_key_event(key, lambda name=name: self.toggle(name))
         self.plotter.add_key_event("t", self.edges)
         self.plotter.add_key_event("n", self.next_page)
+        self.plotter.add_key_event("m", self.next_layer)
         self.plotter.add_key_event("i", self.render_from_here)
         self.plotter.add_key_event("o", self.look_through)
 
@@ -125,14 +111,52 @@ class Window:
 
     def next_page(self) -> None:
         """Show the next layers in the plots."""
-        self.page = (self.page + 1) % max(1, -(-len(self.layers) // PAGE))
+        self.page, self.chosen = (self.page + 1) % max(1, -(-len(self.layers) // PAGE)), 0
         self.plotter.subplot(1, 0)
-        for chart in self.charts:
-            self.plotter.remove_chart(chart)
+        self.plotter.renderer.clear_actors()
         self.plotter.subplot(1, 1)
         self.plotter.renderer.clear_actors()
         self._draw_layers()
         self.plotter.render()
+
+    def next_layer(self) -> None:
+        """Let the depth slider move the next layer of those in the plots."""
+        self.chosen = (self.chosen + 1) % max(1, len(self.plots))
+        self._make_slider()
+        self.plotter.render()
+
+    def set_depth(self, depth: float) -> None:
+        """Give the chosen layer another depth, in the unit of its width: simulate, repaint its plots and draw them."""
+        if self.layers:
+            self.slider.GetRepresentation().SetValue(depth)
+            self._turn(depth)
+            self.plotter.render_window.Render()
+
+    def start_drag(self) -> None:
+        """From now on draw the plots alone, one sample a pixel: in software the rest takes half a second."""
+        window = self.plotter.render_window
+        self._samples = window.GetMultiSamples()
+        window.SetMultiSamples(0)
+        window.Render()
+        for renderer in self._still():
+            renderer.DrawOff()
+
+    def end_drag(self) -> None:
+        """Draw everything again."""
+        for renderer in self._still():
+            renderer.DrawOn()
+        self.plotter.render_window.SetMultiSamples(self._samples)
+
+    def _still(self) -> list[Any]:
+        """The parts that do not change while a slider moves."""
+        return [self.plotter.renderers[0], self.plotter.renderers[1]]
+
+    def _turn(self, depth: float) -> None:
+        index = PAGE * self.page + self.chosen
+        item = self.layers[index]
+        self.layers[index] = item = item._replace(layer=replace(item.layer, depth=depth))
+        self.plots[self.chosen].draw(item.layer)
+        self.sheets[self.chosen].paint(tables.picture(item))
 
     def look_through(self) -> None:
         """Put the window's eye where the stage's camera is."""
@@ -166,7 +190,7 @@ class Window:
         high = 2 * np.tan(np.radians(seen.view_angle) / 2)
         across = high * self._pixels()[0] / self._pixels()[1]
         camera = Camera("", matrix, across, high, focal_length=1.0)
-        self._draw_image(image.picture(self.scene, self.width, self.spp, camera))
+        self._draw_image(image.picture(rescratched(self.scene, self.layers), self.width, self.spp, camera))
         self.plotter.render()
 
     def _pixels(self) -> tuple[int, int]:
@@ -193,11 +217,23 @@ class Window:
         items = self.layers[PAGE * self.page : PAGE * (self.page + 1)]
         more = f" ({self.page + 1} of {-(-len(self.layers) // PAGE)})" if len(self.layers) > PAGE else ""
         self.plotter.subplot(1, 0)
-        self.charts = profiles.add(self.plotter, items)
+        self.plots = profiles.add(self.plotter, items)
         self._title(f"profiles{more}" if items else "no scratch layers")
+        self._make_slider()
         self.plotter.subplot(1, 1)
-        tables.add(self.plotter, items)
+        self.sheets = tables.add(self.plotter, items)
         self._title(f"tables, phi_i to the right, phi_o upwards{more}" if items else "")
+
+    def _make_slider(self) -> None:
+        self.plotter.subplot(1, 0)
+        self.plotter.clear_slider_widgets()
+        if self.plots:
+            item = self.layers[PAGE * self.page + self.chosen]
+            high = 2.0 * max(item.layer.width, item.layer.depth)
+            knob = Knob(f"depth of {item.title}", 0.0, high, item.layer.depth)
+            self.slider = slider(self.plotter, knob, ((0.03, 0.05), (0.47, 0.05)), self._turn)
+            self.slider.AddObserver("StartInteractionEvent", lambda *_: self.start_drag())
+            self.slider.AddObserver("EndInteractionEvent", lambda *_: self.end_drag())
 
     def _title(self, text: str) -> None:
         self.plotter.add_text(text, position=(0.01, 0.945), viewport=True, font_size=8, color=TEXT, name="title")

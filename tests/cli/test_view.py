@@ -32,4 +32,25 @@ def test_help_lists_the_keys(capsys):
     with pytest.raises(SystemExit):
         main(["view", "--help"])
     said = capsys.readouterr().out
-    assert all(f"  {key}  {what}" in said for key, what in viewers.KEYS.items())
+    assert all(f"  {key}  {what}" in said for key, what in (*viewers.KEYS.items(), *viewers.PROFILE_KEYS.items()))
+
+
+@pytest.mark.parametrize(
+    ("argv", "source", "layer", "depth"),
+    [
+        (["a.usda", "--profile"], "a.usda", "", None),
+        (["a.usda", "--profile", "fine", "--depth", "0.3"], "a.usda", "fine", 0.3),
+        (["quartic"], "quartic", "", None),
+    ],
+)
+def test_one_profile(monkeypatch, argv, source, layer, depth):
+    calls = []
+    monkeypatch.setattr(viewers, "view_profile", lambda *args, **options: calls.append((*args, options)))
+    assert main(["view", *argv]) == 0
+    assert calls == [(source, None, {"layer": layer, "depth": depth, "frame": None, "camera": None})]
+
+
+@pytest.mark.parametrize("argv", [["a.usda", "--depth", "1"], ["quartic", "--spp", "2"]])
+def test_options_of_the_other_window_are_refused(shown, capsys, argv):
+    assert main(["view", *argv]) == 2
+    assert argv[1] in capsys.readouterr().err and not shown

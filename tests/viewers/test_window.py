@@ -81,7 +81,7 @@ def test_keys_do_what_the_help_says(make_scene, make_layer, no_render):
             assert all(actor.prop.show_edges for actor in made.groups["meshes"])
             made.next_page()
             plotter.subplot(1, 0)
-            assert made.page == 1 and len(made.charts) == 2
+            assert made.page == 1 and len(made.plots) == 2
             made.next_page()
             assert made.page == 0
             made.look_through()
@@ -89,6 +89,31 @@ def test_keys_do_what_the_help_says(make_scene, make_layer, no_render):
             made.render_from_here()
         finally:
             plotter.close()
+
+
+def test_the_depth_slider_moves_one_layer(make_scene, layers, monkeypatch):
+    """Its outline, its numbers and its table change in place, the other's do not; rendering again has that depth."""
+    given = []
+    monkeypatch.setattr(image, "picture", lambda *args: given.append(args[0]) or np.zeros((3, 4, 3)))
+    with display.canvas(True, (320, 240), (2, 2)) as plotter:
+        made = window.Window(plotter, make_scene(layers), 64, 1, 0)
+        made.next_layer()
+        plotter.render_window.Render()
+        upper = np.array(plotter.screenshot(return_img=True))[:120]
+        made.start_drag()
+        kept = [set(renderer.actors) for renderer in plotter.renderers]
+        pixels, points = [s.pixels for s in made.sheets], [p.line.points for p in made.plots]
+        made.set_depth(5.0)
+        assert [(s.pixels != old).any() for s, old in zip(made.sheets, pixels, strict=True)] == [False, True]
+        assert [(p.line.points != old).any() for p, old in zip(made.plots, points, strict=True)] == [False, True]
+        assert "5 deep" in made.plots[1].size.input and "5 deep" not in made.plots[0].size.input
+        assert [set(renderer.actors) for renderer in plotter.renderers] == kept
+        made.end_drag()
+        plotter.render_window.Render()
+        assert np.array_equal(np.array(plotter.screenshot(return_img=True))[:120], upper)
+        made.render_from_here()
+        depths = [[layer.depth for layer in scene.materials[0].layers] for scene in given]
+        assert depths == [[1.0, 1.0], [1.0, 5.0]]
 
 
 def test_rendering_from_the_window_looks_through_its_camera(make_scene, make_layer, monkeypatch):
