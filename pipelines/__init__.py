@@ -1,1 +1,7 @@
-"""Scripts that people run and copy: one task a file, each with main(argv)."""
+"""Scripts that people run and copy: one task a file, each with main(argv).
+
+Files:
+    author_demo               writes the demo stages: demo_ball, demo_kettle, demo_panel, demo_plain; demo_shapes has
+                              their meshes, demo_usd puts them on a stage
+    profile_from_topography   takes a cross-section out of a height map
+"""

@@ -4,9 +4,9 @@ Files, the way a table is made: ``profile`` the record, ``shapes`` named ones, `
 ``tracer_device`` the next hit, ``path_device`` a whole path, ``trace_kernels`` all rays of a column; ``reflectors``
 Fresnel as rows, ``energy_kernels`` and ``polarised_kernels`` what paths carry and where it lands; ``paths`` the host
 of both passes, ``launch`` threads; ``tracing`` columns and symmetries, ``balance`` (and its kernels) whole tables,
-``simulation`` the calls; ``theta`` models along the scratch, ``theta_choice`` their
-errors; ``table`` the result, ``table_device`` and
-``table_kernels`` its sampling; ``single_rays``, ``cache`` tables on disk.
+``simulation`` the calls; ``theta`` models along the scratch, ``theta_choice`` their errors; ``table`` the result,
+``table_device`` and ``table_kernels`` its sampling; ``drawing`` a picture of it; ``single_rays`` rays to look at;
+``cache`` tables on disk.
 """
 
 from scratchwarp.profiles.cache import Store as Store
@@ -26,5 +26,6 @@ from scratchwarp.profiles.theta import THETA_MODELS as THETA_MODELS
 from scratchwarp.profiles.theta_choice import choose_theta_model as choose_theta_model
 from scratchwarp.profiles.theta_choice import theta_model_errors as theta_model_errors
 from scratchwarp.profiles.tracing import SAMPLERS as SAMPLERS
+from scratchwarp.profiles.tracing import Request as Request
 from scratchwarp.profiles.tracing import Traced as Traced
 from scratchwarp.profiles.tracing import trace_paths as trace_paths

@@ -36,7 +36,8 @@ def simulate(
     alone. ``incidence``: "cell" spreads phi_i over its bin by its cosine (a reciprocal table), "centre" takes the
     bin's centre as the paper prints it. ``sampler``: "beam" spreads the light between neighbouring rays over the exit
     angles between them; "stratified" and "random" count rays. ``max_bounces``: paths that are longer count as
-    ``lost``. ``seed``: of the random samplers. ``theta_model``: "gamma", "quadratic" or "exact" (see ``theta``).
+    ``lost``. ``seed``: of the random samplers. ``theta_model``: "gamma", "quadratic", "table" or "exact" (see
+    ``theta``).
     ``polarised``: products of Jones matrices along each path in place of unpolarised reflectances, for the exact
     model of a conductor or dielectric. ``threads``: None takes all processors; the bits are the same. ``store``: a
     cache to look in first (``profiles.store()``).

@@ -1,7 +1,8 @@
 """Reflectance models, one file (or a host and a device file) a model; public names load on first use.
 
-``base`` the surface under the scratches; ``profile_table`` the mirror cone of a scratch profile; ``texture`` what
-varies over a surface.
+``base`` the surface under the scratches (``base_device``, ``base_energy_device``, and ``base_arrays_device`` over
+arrays); ``profile_table`` the mirror cone of a scratch profile; ``texture`` what varies over a surface; ``vectors``
+checks of what NumPy entry points are given. ``mdf``, ``diffraction``, ``stencils``, ``measured``: folders of their own.
 """
 
 from ..lazy import lazily

@@ -13,12 +13,14 @@ Files, from the outside in:
     mesh            UsdGeomMesh; triangulate, primvar, normals, vectors are its parts
     shapes          spheres, cubes, planes, cylinders, cones, capsules
     place           instances; binding says which material goes where
-    material        UsdShadeMaterial: preview, scratch_surface, texture_input, texture, layer
+    material        UsdShadeMaterial: preview, scratch_surface, shader_input, texture_input, texture, layer
     curves          explicit scratches; curve_basis samples them
-    illuminate      all lights; lights says which function reads which type: light_near, light_far, light_shape
+    illuminate      all lights; lights says which function reads which type: light_near, light_far, light_shape; light
+                    is what they share
     color           colours in linear Rec.709
     complain        what an author should hear of the scene as a whole
-    validation*     the rules that stages are checked against
+    validation      validate(path) -> findings; validation_framework hands the rules (validation_rule) to OpenUSD's own
+                    validators: validation_names, _values, _links, _materials, _profiles, _curves
 """
 
 from scratchwarp.usd_schemas import register

@@ -8,7 +8,8 @@ from pxr import Usd, UsdShade
 from scratchwarp.scene import PreviewSurface, TextureInput
 
 from .color import color
-from .reading import Reading, fits
+from .reading import Reading
+from .shader_input import constant, is_output, source_of
 from .texture import Textures
 from .texture_input import read_texture_input
 
@@ -76,21 +77,16 @@ def read_preview(reading: Reading, prim: Usd.Prim, textures: Textures) -> tuple[
 def _value(reading: Reading, shader: UsdShade.Shader, name: str, default: Any, textures: Textures) -> Any:
     """A constant (colours in linear Rec.709), a TextureInput, or the word displayColor."""
     given = shader.GetInput(name)
-    sources = given.GetValueProducingAttributes() if given else []
-    if not sources:
+    source = source_of(shader, name)
+    if source is None:
         if given and given.GetRawConnectedSourcePaths():
             target = given.GetRawConnectedSourcePaths()[0]
             reading.warn(shader.GetPath(), f"inputs:{name} is connected to {target}, which does not exist")
         return default
-    source = sources[0]
-    if UsdShade.Utils.GetType(source.GetName()) != UsdShade.AttributeType.Output:
-        got = source.Get(reading.time)
-        if got is None:
-            return default
-        if not fits(got, default):
-            reading.warn(source.GetPath(), f"holds {got!r}, which is of the wrong type; {default} is used")
-            return default
-        return color(reading, source, np.array(got, np.float64)) if name in _COLORS else got
+    if not is_output(source):
+        got = constant(reading, source, default)
+        authored_color = name in _COLORS and got is not default
+        return color(reading, source, np.array(got, np.float64)) if authored_color else got
     node = UsdShade.Shader(source.GetPrim())
     kind = str(node.GetShaderId() or "")
     if kind == "UsdUVTexture":
@@ -98,9 +94,8 @@ def _value(reading: Reading, shader: UsdShade.Shader, name: str, default: Any, t
         automatic = "raw" if name == "normal" else "auto"
         return read_texture_input(reading, node, source.GetBaseName(), default, textures, automatic)
     if kind.startswith(_PRIMVAR_READER):
-        variable = node.GetInput("varname")
-        named = variable.GetValueProducingAttributes() if variable else []
-        varname = str(named[0].Get(reading.time)) if named else ""
+        named = source_of(node, "varname")
+        varname = str(named.Get(reading.time)) if named else ""
         if varname == "displayColor":
             return "displayColor"
         fallback = node.GetInput("fallback")

@@ -6,12 +6,12 @@ import numpy as np
 from pxr import Usd, UsdShade
 
 from scratchwarp.scene import TextureInput
+from scratchwarp.scene.texture import CHANNELS, WRAPS
 
 from .color import space_of
 from .reading import Reading, fits
+from .shader_input import constant, is_output, source_of
 from .texture import Textures
-
-_WRAPS = ("black", "clamp", "repeat", "mirror")
 
 
 def read_texture_input(
@@ -25,10 +25,10 @@ def read_texture_input(
     authored is ``repeat``; ``useMetadata`` is ``black``, as UsdPreviewSurface has it for files without metadata.
     """
     path = node.GetPath()
-    if output not in ("rgb", "r", "g", "b", "a"):
+    if output not in CHANNELS:
         reading.warn(path, f"outputs:{output} is none of a UsdUVTexture; the input's default is used")
         return default
-    file = _source(node, "file")
+    file = source_of(node, "file")
     asset = file.Get(reading.time) if file else None
     space = _space(reading, node, file)
     index = textures.index(path, asset, automatic if space == "auto" else space)
@@ -57,22 +57,9 @@ def read_texture_input(
     )
 
 
-def _source(node: UsdShade.Shader, name: str) -> Usd.Attribute | None:
-    """The attribute that gives an input its value, through interfaces of node graphs and materials."""
-    given = node.GetInput(name)
-    sources = given.GetValueProducingAttributes() if given else []
-    return sources[0] if sources else None
-
-
 def _get(reading: Reading, node: UsdShade.Shader, name: str, otherwise: Any = None) -> Any:
-    source = _source(node, name)
-    if source is None or UsdShade.Utils.GetType(source.GetName()) == UsdShade.AttributeType.Output:
-        return otherwise
-    got = source.Get(reading.time)
-    if got is not None and not fits(got, otherwise):
-        reading.warn(source.GetPath(), f"holds {got!r}, which is of the wrong type; {otherwise} is used")
-        return otherwise
-    return otherwise if got is None else got
+    source = source_of(node, name)
+    return otherwise if source is None or is_output(source) else constant(reading, source, otherwise)
 
 
 def _numbers(reading: Reading, node: UsdShade.Shader, name: str, otherwise: float) -> np.ndarray:
@@ -96,7 +83,7 @@ def _wrap(reading: Reading, node: UsdShade.Shader, name: str) -> str:
     wrap = str(_get(reading, node, name, "repeat"))
     if wrap == "useMetadata":
         return "black"
-    if wrap not in _WRAPS:
+    if wrap not in WRAPS:
         reading.warn(node.GetPath(), f"inputs:{name} is {wrap!r}; repeat is used")
         return "repeat"
     return wrap
@@ -108,8 +95,8 @@ def _coordinates(reading: Reading, node: UsdShade.Shader) -> tuple[str, np.ndarr
     seen: set = set()
     current, name = node, "st"
     while True:
-        source = _source(current, name)
-        if source is None or UsdShade.Utils.GetType(source.GetName()) != UsdShade.AttributeType.Output:
+        source = source_of(current, name)
+        if source is None or not is_output(source):
             if source is not None:
                 reading.warn(current.GetPath(), f"a constant inputs:{name} is not honoured; primvars:st is used")
             return "st", matrix[:2]
