@@ -111,6 +111,7 @@ def cross_sections(args: argparse.Namespace) -> list[tuple[str, Any, Any]]:
 
     from . import make_plan, optics, profiles, read
 
+    _check_table(args)
     if Path(args.source).suffix in (".usd", ".usda", ".usdc", ".usdz"):
         tables = make_plan(read(args.source)).tables
         if not tables:
@@ -144,6 +145,21 @@ def cross_sections(args: argparse.Namespace) -> list[tuple[str, Any, Any]]:
     except ValueError as error:
         raise UsageError(str(error)) from None
     return [(args.source, profile, fresnel)]
+
+
+def _check_table(args: argparse.Namespace) -> None:
+    """UsageError where ``simulate`` is asked for a table or a file that cannot be."""
+    from . import image, profiles
+
+    if Path(args.out).suffix.lower() not in image.SUFFIXES:
+        raise UsageError(f"OUT {args.out!r} ends in none of {', '.join(image.SUFFIXES)}")
+    if args.thetaModel not in profiles.THETA_MODELS:
+        raise UsageError(f"--thetaModel {args.thetaModel!r} is not one of {', '.join(profiles.THETA_MODELS)}")
+    names = ("resolution", "rays", "incidence", "sampler", "seed")
+    try:
+        profiles.Request(max_bounces=args.maxBounces, **{name: getattr(args, name) for name in names})
+    except ValueError as error:
+        raise UsageError(str(error)) from None
 
 
 def listed(text: str) -> tuple[str, ...]:

@@ -95,6 +95,8 @@ def test_chosen_layers(renderer, tmp_path):
         (["render", "a.usda", "a.exr", "--resume"], "--checkpoint"),
         (["render", "a.usda", "a.jpg"], ".png"),
         (["render", "a.usda", "a.exr", "--effect", "shadows"], "NAME=on"),
+        (["render", "a.usda", "a.exr", "--effect", "glitter=on"], "scratches.worley"),
+        (["render", "a.usda", "a.exr", "--purposes", "everything"], "guide"),
         (["render", "a.usda", "a.exr", "--aov", "dept"], "depth"),
         (["render", "a.usda", "a.png", "-color", "gamma"], "gamma"),
         (["render", "a.usda", "a.png", "--view", "Raw"], "openColorIO"),

@@ -3,6 +3,7 @@ import pytest
 
 from scratchwarp import image, profiles
 from scratchwarp.cli import main
+from scratchwarp.pipelines.author_demo import author
 
 SMALL = ["--resolution", "8", "--rays", "16"]
 
@@ -67,6 +68,35 @@ def test_points_at_fault_are_1(tmp_path, capsys, source, text, message):
 def test_what_is_neither_shape_nor_file(tmp_path, capsys):
     assert main(["simulate", "quartik", str(tmp_path / "t.npz")]) == 2
     assert "quartic" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("argv", "message"),
+    [
+        (["quartic", "t.tif"], ".npz"),
+        (["quartic", "t.npz", "--depth", "nan"], "depth"),
+        (["quartic", "t.npz", "--resolution", "0"], "resolution"),
+        (["quartic", "t.npz", "--sampler", "best"], "stratified"),
+        (["quartic", "t.npz", "--maxBounces", "0"], "max_bounces"),
+        (["quartic", "t.npz", "--metal", "lead"], "copper"),
+        (["quartic", "t.npz", "--ior", "0"], "ior"),
+        (["quartic", "t.npz", "--metal", "gold", "--ior", "1.5"], "exclude"),
+        (["quartic", "t.npz", "--thetaModel", "linear"], "quadratic"),
+    ],
+)
+def test_arguments_that_cannot_be_are_wrong_usage(tmp_path, monkeypatch, capsys, argv, message):
+    monkeypatch.chdir(tmp_path)
+    assert main(["simulate", *argv]) == 2
+    assert message in capsys.readouterr().err and not list(tmp_path.iterdir())
+
+
+def test_an_empty_file_and_a_layer_that_is_not_there(tmp_path, capsys, recwarn):
+    (tmp_path / "p.txt").write_text("\n")
+    assert main(["simulate", str(tmp_path / "p.txt"), str(tmp_path / "t.npz")]) == 1
+    assert "p.txt: the file is empty" in capsys.readouterr().err and not recwarn.list
+    stage = author(tmp_path)[0]
+    assert main(["simulate", str(stage), str(tmp_path / "t.npz"), "--layer", "nope"]) == 2
+    assert "--layer 'nope' is none of" in capsys.readouterr().err
 
 
 def test_plot_writes_a_picture_beside_the_table(tmp_path):
