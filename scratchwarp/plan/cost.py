@@ -1,7 +1,7 @@
 """About what each effect costs, so that a plan can say where the time will go.
 
-Nanoseconds a camera sample on one core of a 2 GHz server processor, measured on the demo stages by switching effects
-off one at a time. They rank effects; they do not predict seconds.
+Nanoseconds a camera sample on one core, estimated from renders of the demo stages. They rank effects; they do not
+predict seconds.
 """
 
 from collections.abc import Mapping

@@ -19,7 +19,8 @@ class Settings:
             the stage's resolution or the camera's aperture.
         spp: samples a pixel [16]; seed: of every random choice [0].
         threads: worker threads [all cores]; the image does not depend on it.
-        quality: draft, preview, final or reference; max_error: relative error to stop at.
+        quality: draft, preview, final or reference, which is 4, 16, 128 or 1024 samples where spp is not given.
+        max_error: largest error of the albedo of scratches by their tables' theta model [0.01].
         integrator: direct or path; max_depth: surfaces that a path may meet.
         crop: (xmin, xmax, ymin, ymax) in [0, 1], from the top left; only that part is rendered.
         tile: edge of a square tile in pixels.
