@@ -168,7 +168,9 @@ def make_kernel(key: KernelKey):
                         if depth < window.max_depth:
                             tangent = wp.vec3(0.0, 0.0, 0.0)
                             if wp.static(key.directed):
-                                tangent = interpolate_tangent(g, s)
+                                # other materials keep the samples that they have without any tangents
+                                if m.layers > 0 or m.alpha_x != m.alpha_y:
+                                    tangent = interpolate_tangent(g, s)
                             frame = frame_at(g, arrays, m, s, tangent, wo)
                             base = base_at(g, arrays, m, s)
                             # edges of the footprint in the triangle's plane
