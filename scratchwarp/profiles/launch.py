@@ -12,6 +12,7 @@ from functools import lru_cache
 from itertools import count
 from typing import Any
 
+import numpy as np
 import warp as wp
 
 _TILES = 8
@@ -20,6 +21,15 @@ _TILES = 8
 def default_threads() -> int:
     """Processors that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else (os.cpu_count() or 1)
+
+
+def threads_of(threads: int | None) -> int:
+    """The number asked for, or ``default_threads()`` where that is None; ValueError unless it is at least 1."""
+    if threads is None:
+        return default_threads()
+    if isinstance(threads, bool) or not isinstance(threads, int | np.integer) or threads < 1:
+        raise ValueError(f"threads must be a whole number of at least 1, got {threads!r}")
+    return int(threads)
 
 
 @lru_cache(maxsize=4)

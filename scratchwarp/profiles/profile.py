@@ -120,7 +120,10 @@ class Profile:
 
 
 def _checked(name: str, value: Any) -> np.ndarray:
-    array = np.array(value, dtype=np.float64)
+    try:
+        array = np.array(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} must be numbers of shape [n, 2], got {value!r}") from None
     if array.ndim != 2 or array.shape[1] != 2:
         raise ValueError(f"{name} must have shape [n, 2], got {array.shape}")
     if not np.all(np.isfinite(array)):

@@ -46,10 +46,9 @@ def shape(
     """
     if name not in _SHAPES:
         raise ValueError(f"name must be one of {shape_names()}, got {name!r}")
-    if not (np.isfinite(depth) and depth >= 0.0):
-        raise ValueError(f"depth must be finite and at least 0, got {depth}")
-    if not (np.isfinite(rim) and rim >= 0.0):
-        raise ValueError(f"rim must be finite and at least 0, got {rim}")
+    for key, value in (("depth", depth), ("rim", rim), ("rim_width", rim_width)):
+        if not (isinstance(value, int | float | np.number) and np.isfinite(value) and value >= 0.0):
+            raise ValueError(f"{key} must be finite and at least 0, got {value!r}")
     if not 0.0 < rim_width < 0.5:
         raise ValueError(f"rim_width must lie between 0 and 0.5, got {rim_width}")
     known = [key for key in inspect.signature(_SHAPES[name]).parameters]

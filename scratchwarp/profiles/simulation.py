@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from scratchwarp.profiles.cache import Store, table_key
-from scratchwarp.profiles.launch import default_threads
+from scratchwarp.profiles.launch import threads_of
 from scratchwarp.profiles.profile import Profile
 from scratchwarp.profiles.reflectors import reflecting
 from scratchwarp.profiles.table import Table
@@ -56,7 +56,7 @@ def simulate(
     request = checked(profile, arguments)
     reflector = reflecting(fresnel)
     count = len(nodes(theta_model)) * (1 if reflector is None else int(reflector.channels))
-    workers = threads or default_threads()
+    workers = threads_of(threads)
 
     def run() -> Table:
         return table_of(
@@ -89,5 +89,5 @@ def simulate_full(
     wanted = checked(profile, request)
     reflector = reflecting(fresnel)
     count = len(cosines_of(thetas)) * (1 if reflector is None else int(reflector.channels))
-    workers = threads or default_threads()
+    workers = threads_of(threads)
     return slices_of(profile, wanted, blocks(profile, wanted, workers, count), thetas, fresnel, polarised, workers)

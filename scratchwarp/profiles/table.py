@@ -73,7 +73,7 @@ class Table:
         [0, 1), and their densities [1/rad]. Broadcasts; float32. ValueError on angles or ``u`` out of range."""
         from scratchwarp.profiles.table_kernels import sample_table
 
-        phi_o, u = np.broadcast_arrays(_angle("phi_o", phi_o), np.asarray(u, np.float64))
+        phi_o, u = _together("u", _angle("phi_o", phi_o), np.asarray(u, np.float64))
         if not np.all((u >= 0.0) & (u < 1.0)):
             raise ValueError(f"u must lie in [0, 1), got {u[~((u >= 0.0) & (u < 1.0))].flat[0]}")
         below_one = np.minimum(u.astype(np.float32), np.float32(1.0 - 2.0**-24))
@@ -85,7 +85,7 @@ class Table:
         Broadcasts; float32."""
         from scratchwarp.profiles.table_kernels import pdf_table
 
-        phi_o, phi_i = np.broadcast_arrays(_angle("phi_o", phi_o), _angle("phi_i", phi_i))
+        phi_o, phi_i = _together("phi_i", _angle("phi_o", phi_o), _angle("phi_i", phi_i))
         return self._over_arrays(pdf_table, phi_o, phi_i, 1)[0]
 
     def _over_arrays(self, kernel: Any, first: np.ndarray, second: np.ndarray, outputs: int) -> list[np.ndarray]:
@@ -106,6 +106,16 @@ def _angle(name: str, value: Any) -> np.ndarray:
     if not np.all(inside):
         raise ValueError(f"{name} must lie in [-pi/2, pi/2] rad, got {angles[~inside].flat[0]}")
     return np.clip(angles, -_HALF_PI, _HALF_PI)
+
+
+def _together(name: str, phi_o: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Both, broadcast; ValueError naming them where their shapes do not fit."""
+    try:
+        first, second = np.broadcast_arrays(phi_o, other)
+    except ValueError:
+        shapes = f"{phi_o.shape} and {other.shape}"
+        raise ValueError(f"phi_o and {name} must broadcast, got shapes {shapes}") from None
+    return first, second
 
 
 def assembled(by_bounce: np.ndarray, lost: np.ndarray, slices: np.ndarray | None, **fields: Any) -> Table:

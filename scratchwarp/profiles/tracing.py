@@ -9,7 +9,7 @@ import numpy as np
 
 from scratchwarp.profiles import theta as theta_models
 from scratchwarp.profiles.balance import balanced, exponents
-from scratchwarp.profiles.launch import default_threads
+from scratchwarp.profiles.launch import threads_of
 from scratchwarp.profiles.paths import Beams, Paths, trace_lines
 from scratchwarp.profiles.profile import Profile
 from scratchwarp.profiles.reflectors import Rows, reflecting, rows
@@ -36,8 +36,9 @@ class Request:
         least = {"resolution": 2, "rays": 4, "max_bounces": 1, "seed": 0}
         for name, low in least.items():
             value = getattr(self, name)
-            if isinstance(value, bool) or not np.isfinite(value) or int(value) != value or not low <= value < 2**31:
-                raise ValueError(f"{name} must be a whole number of at least {low}, got {value}")
+            number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
+            if not number or not np.isfinite(value) or int(value) != value or not low <= value < 2**31:
+                raise ValueError(f"{name} must be a whole number of at least {low}, got {value!r}")
             object.__setattr__(self, name, int(value))
         if self.incidence not in INCIDENCES:
             raise ValueError(f"incidence must be one of {INCIDENCES}, got {self.incidence!r}")
@@ -77,7 +78,7 @@ def trace_paths(profile: Profile, *, threads: int | None = None, **request: Any)
     resolution, rays, incidence, sampler, max_bounces, seed and threads; keeps about 40 bytes a ray. Raises ValueError
     as it does."""
     wanted = checked(profile, request)
-    workers = threads or default_threads()
+    workers = threads_of(threads)
     return Traced(profile, wanted, tuple(blocks(profile, wanted, workers, 1)), workers)
 
 
@@ -210,7 +211,10 @@ def slices_of(
 
 def cosines_of(thetas: Any) -> tuple[float, ...]:
     """cos(theta) of a list of angles; ValueError unless it is one-dimensional and within [-pi/2, pi/2]."""
-    angles = np.atleast_1d(np.asarray(thetas, np.float64))
+    try:
+        angles = np.atleast_1d(np.asarray(thetas, np.float64))
+    except (TypeError, ValueError):
+        raise ValueError(f"thetas must be one or more angles in [-pi/2, pi/2], got {thetas!r}") from None
     if angles.ndim != 1 or angles.size == 0 or not np.all(np.abs(angles) <= 0.5 * np.pi + 1e-9):
         raise ValueError(f"thetas must be one or more angles in [-pi/2, pi/2], got {thetas}")
     return tuple(float(m) for m in np.maximum(np.cos(angles), 0.0))

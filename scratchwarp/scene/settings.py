@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
+from typing import Any
 
 from .checks import in_range, one_of, put
 
@@ -64,9 +65,20 @@ class Settings:
         if self.max_error is not None:
             in_range("Settings", "max_error", self.max_error, 1e-9, 1e9)
         if self.crop is not None:
-            x0, x1, y0, y1 = self.crop
-            if not (0 <= x0 < x1 <= 1 and 0 <= y0 < y1 <= 1):
-                raise ValueError(
-                    f"Settings: crop is {self.crop}, expected (xmin, xmax, ymin, ymax) with 0 <= min < max <= 1"
-                )
+            _check_crop(self.crop)
+        if not isinstance(self.effects, Mapping):
+            raise ValueError(f"Settings: effects is {self.effects!r}, expected a mapping of names to True or False")
+        for name, value in self.effects.items():
+            if not isinstance(value, bool):
+                raise ValueError(f"Settings: effects[{name!r}] is {value!r}, expected True or False")
         put(self, effects=MappingProxyType(dict(self.effects)))
+
+
+def _check_crop(crop: Any) -> None:
+    try:
+        x0, x1, y0, y1 = (float(edge) for edge in crop)
+        fits = 0 <= x0 < x1 <= 1 and 0 <= y0 < y1 <= 1
+    except (TypeError, ValueError):
+        fits = False
+    if not fits:
+        raise ValueError(f"Settings: crop is {crop!r}, expected (xmin, xmax, ymin, ymax) with 0 <= min < max <= 1")

@@ -242,6 +242,9 @@ def test_grazing_bins_conserve_energy():
         {"seed": -1},
         {"theta_model": "cubic"},
         {"fresnel": "gold"},
+        {"rays": "many"},
+        {"threads": 0},
+        {"threads": "all"},
     ],
 )
 def test_arguments_are_checked(arguments):
@@ -256,5 +259,11 @@ def test_only_profiles_are_simulated():
         profiles.simulate([[0, 0], [1, 0]])
     with pytest.raises(ValueError, match="thetas"):
         profiles.simulate_full(profiles.shape("flat"), [2.0])
+    with pytest.raises(ValueError, match="thetas .* got .'steep'"):
+        profiles.simulate_full(profiles.shape("flat"), ["steep"])
+    with pytest.raises(ValueError, match="depth .* got 'deep'"):
+        profiles.shape("sine", depth="deep")
+    with pytest.raises(ValueError, match="points .* got 'v'"):
+        profiles.Profile("v")
     with pytest.raises(ValueError, match="theta"):
         profiles.simulate(profiles.shape("flat"), resolution=8, rays=8).slice(2.0)
