@@ -18,7 +18,8 @@ from .sheet import Sheet
 from .sliders import slider
 
 RESOLUTION = 128
-RAYS = 256
+RAYS = 128  # for each direction while a slider moves
+FINE = 8  # times as many once it rests
 SIZE = (960, 620)
 
 # Places in the window's plane: the table lies in the unit square, the outline to its right.
@@ -122,7 +123,7 @@ class LiveProfile:
         plotter.disable_anti_aliasing()  # eight samples a pixel would cost ten times the rest in software
         text = partial(plotter.add_text, viewport=True, color=TEXT)
         self._title = text("", position=(0.02, 0.95), font_size=8)
-        self._status = text("", position=(0.51, 0.95), font_size=8)
+        self._status = text("the sliders simulate as they move", position=(0.51, 0.95), font_size=8)
         text("phi_i to the right, phi_o upwards; one bounce red, two green, more blue", position=_NOTE, font_size=6)
         self.sheet = Sheet(plotter, np.zeros((tables.SIDE, tables.SIDE, 3)), 0.0, 0.0, 1.0)
         self.line = Line(plotter, self.section.color, 3.0)
@@ -168,8 +169,14 @@ class LiveProfile:
         self.sliders[name].GetRepresentation().SetValue(value)
         self._draw()
 
+    def settle(self) -> None:
+        """Simulate what is shown with more rays; the window is not drawn yet."""
+        self.table = self._simulated(self.profile, FINE * self.rays)
+        self.sheet.paint(tables.bounces(self.table))
+
     def _show(self, section: CrossSection) -> None:
         self._update(section)
+        self.settle()
         self.line.actor.prop.color = section.color
         self._make_sliders()
 
@@ -177,12 +184,12 @@ class LiveProfile:
         """Simulate a cross-section and repaint what shows it; the window is not drawn yet."""
         start = perf_counter()
         profile = section.profile()
-        table = profiles.simulate(profile, resolution=self.resolution, rays=self.rays)
+        table = self._simulated(profile, self.rays)
         middle = perf_counter()
         self.section, self.profile, self.table = section, profile, table
         self.sheet.paint(tables.bounces(table))
         self._paint_line()
-        self._write_texts()
+        self._title.input = self._described()
         self.spent = Spent(middle - start, perf_counter() - middle)
 
     def _draw(self) -> None:
@@ -198,21 +205,21 @@ class LiveProfile:
         scale = min((_RIGHT - _LEFT) / np.ptp(line[:, 0]), (_TOP - 0.05) / max(np.ptp(line[:, 1]), 1e-9))
         self.line.draw(scale * line + (0.5 * (_LEFT + _RIGHT), _TOP))
 
-    def _write_texts(self) -> None:
+    def _described(self) -> str:
         kind = "repeated" if self.section.record.periodic else "alone"
         shape = self.section.record.shape
         name = shape if shape == self.section.title else f"{self.section.title} ({shape})"
-        self._title.input = f"{name}, {kind}, {self.resolution} x {self.resolution}"
-        self._status.input = (
-            f"simulated in {1e3 * self.spent.simulation:.1f} ms, "
-            f"drawn in {1e3 * self.plotter.renderer.GetLastRenderTimeInSeconds():.1f} ms"
-        )
+        return f"{name}, {kind}, {self.resolution} x {self.resolution}"
+
+    def _simulated(self, profile: profiles.Profile, rays: int) -> profiles.Table:
+        return profiles.simulate(profile, resolution=self.resolution, rays=rays)
 
     def _make_sliders(self) -> None:
         self.plotter.clear_slider_widgets()
         self.sliders.clear()
-        for i, knob in enumerate(self.section.knobs):
-            self.sliders[knob.name] = slider(self.plotter, knob, PLACES[i], partial(self._turn, knob.name))
+        for place, knob in zip(PLACES, self.section.knobs, strict=False):
+            turned = partial(self._turn, knob.name)
+            self.sliders[knob.name] = slider(self.plotter, knob, place, turned, released=self.settle)
 
     def _turn(self, name: str, value: float) -> None:
         """A slider moved: VTK draws the window after this."""
@@ -220,3 +227,6 @@ class LiveProfile:
             self._update(self.section.turned({name: value}))
         except ValueError as error:
             self._status.input = str(error)
+            return
+        drawn = max(self.plotter.renderer.GetLastRenderTimeInSeconds(), 0.0)  # the time before
+        self._status.input = f"simulated in {1e3 * self.spent.simulation:.1f} ms, drawn in {1e3 * drawn:.1f} ms"

@@ -15,7 +15,7 @@ from .sheet import Sheet
 SIDE = 138  # pixels across ``bounces``: 128 bins, and the margin with its ticks
 
 
-def picture(item: Shown, resolution: int = 128, rays: int = 128) -> np.ndarray:
+def picture(item: Shown, resolution: int = 128, rays: int = 512) -> np.ndarray:
     """The mirror table of a layer as an image [resolution, resolution, 3] in [0, 1], phi_o upwards, phi_i to the right.
 
     White is what the 99.5th percentile reaches.

@@ -18,6 +18,7 @@ from .sheet import Sheet
 from .sliders import slider
 
 PAGE = 12  # layers that the plots show at once
+DRAGGED_RAYS = 128  # for each direction of a table while its slider moves
 
 
 def view(
@@ -142,21 +143,25 @@ class Window:
             renderer.DrawOff()
 
     def end_drag(self) -> None:
-        """Draw everything again."""
+        """Draw everything again, the table with more rays."""
         for renderer in self._still():
             renderer.DrawOn()
         self.plotter.render_window.SetMultiSamples(self._samples)
+        self.sheets[self.chosen].paint(tables.picture(self._item()))
+
+    def _item(self) -> Shown:
+        """The layer that the depth slider moves."""
+        return self.layers[PAGE * self.page + self.chosen]
 
     def _still(self) -> list[Any]:
         """The parts that do not change while a slider moves."""
         return [self.plotter.renderers[0], self.plotter.renderers[1]]
 
     def _turn(self, depth: float) -> None:
-        index = PAGE * self.page + self.chosen
-        item = self.layers[index]
-        self.layers[index] = item = item._replace(layer=replace(item.layer, depth=depth))
+        item = self._item()._replace(layer=replace(self._item().layer, depth=depth))
+        self.layers[PAGE * self.page + self.chosen] = item
         self.plots[self.chosen].draw(item.layer)
-        self.sheets[self.chosen].paint(tables.picture(item))
+        self.sheets[self.chosen].paint(tables.picture(item, rays=DRAGGED_RAYS))
 
     def look_through(self) -> None:
         """Put the window's eye where the stage's camera is."""
@@ -228,12 +233,13 @@ class Window:
         self.plotter.subplot(1, 0)
         self.plotter.clear_slider_widgets()
         if self.plots:
-            item = self.layers[PAGE * self.page + self.chosen]
+            item = self._item()
             high = 2.0 * max(item.layer.width, item.layer.depth)
             knob = Knob(f"depth of {item.title}", 0.0, high, item.layer.depth)
-            self.slider = slider(self.plotter, knob, ((0.03, 0.05), (0.47, 0.05)), self._turn)
-            self.slider.AddObserver("StartInteractionEvent", lambda *_: self.start_drag())
-            self.slider.AddObserver("EndInteractionEvent", lambda *_: self.end_drag())
+            self.slider = slider(
+                self.plotter, knob, ((0.03, 0.05), (0.47, 0.05)), self._turn,
+                grabbed=self.start_drag, released=self.end_drag,
+            )  # fmt: skip
 
     def _title(self, text: str) -> None:
         self.plotter.add_text(text, position=(0.01, 0.945), viewport=True, font_size=8, color=TEXT, name="title")

@@ -71,8 +71,11 @@ def test_a_mouse_on_the_slider_turns_it(live):
     for event, x in zip(("LeftButtonPress", "MouseMove", "MouseMove"), places, strict=True):
         interactor.SetEventInformation(round(x * wide), round(y * high), 0, 0)
         interactor.InvokeEvent(f"{event}Event")
+    assert "simulated in" in live._status.input
+    coarse = live.table.metadata["rays"]
     interactor.InvokeEvent("LeftButtonReleaseEvent")
     assert np.isclose(live.section.depth, 2.0)
+    assert live.table.metadata["rays"] == live_profile.FINE * coarse
     assert np.ptp(live.line.points[:, 1]) > 0.8
 
 

@@ -100,7 +100,7 @@ def test_the_depth_slider_moves_one_layer(make_scene, layers, monkeypatch):
         made.next_layer()
         plotter.render_window.Render()
         upper = np.array(plotter.screenshot(return_img=True))[:120]
-        made.start_drag()
+        made.slider.InvokeEvent("StartInteractionEvent")
         kept = [set(renderer.actors) for renderer in plotter.renderers]
         pixels, points = [s.pixels for s in made.sheets], [p.line.points for p in made.plots]
         made.set_depth(5.0)
@@ -108,7 +108,7 @@ def test_the_depth_slider_moves_one_layer(make_scene, layers, monkeypatch):
         assert [(p.line.points != old).any() for p, old in zip(made.plots, points, strict=True)] == [False, True]
         assert "5 deep" in made.plots[1].size.input and "5 deep" not in made.plots[0].size.input
         assert [set(renderer.actors) for renderer in plotter.renderers] == kept
-        made.end_drag()
+        made.slider.InvokeEvent("EndInteractionEvent")
         plotter.render_window.Render()
         assert np.array_equal(np.array(plotter.screenshot(return_img=True))[:120], upper)
         made.render_from_here()
