@@ -27,6 +27,17 @@ def bound_materials(prims: Sequence[Usd.Prim], purposes: Sequence[str] = PURPOSE
     return found
 
 
+def lost_binding(prim: Usd.Prim) -> str | None:
+    """Path that the all-purpose binding of a prim without material names, its own or an ancestor's, though no Material
+    is there."""
+    while prim and not prim.IsPseudoRoot():
+        targets = UsdShade.MaterialBindingAPI(prim).GetDirectBindingRel().GetTargets()
+        if targets:
+            return str(targets[0])
+        prim = prim.GetParent()
+    return None
+
+
 def _purpose(binding: Usd.Relationship) -> str:
     """Purpose in a name such as material:binding[:purpose] or material:binding:collection[:purpose]:name."""
     _, _, *rest = binding.SplitName()

@@ -8,7 +8,7 @@ from pxr import Usd
 
 from scratchwarp.scene import Instance, StageError
 
-from .binding import bound_materials, slot_prims
+from .binding import bound_materials, lost_binding, slot_prims
 from .geometry import Geometry
 from .material import Materials
 from .reading import Reading
@@ -39,7 +39,12 @@ def place_instances(
     prims = {str(p.prim.GetPath()): p.prim for p, _ in geometry.placements}
     slots = {path: slot_prims(prim) for path, prim in prims.items()}
     every: list[Usd.Prim] = [prim for found in slots.values() for prim in found]
-    bound = iter(bound_materials(every, purposes))
+    materials_found = bound_materials(every, purposes)
+    for prim, material in zip(every, materials_found, strict=True):
+        lost = None if material else lost_binding(prim)
+        if lost:
+            reading.warn(prim.GetPath(), f"is bound to {lost}, which is no Material")
+    bound = iter(materials_found)
     indices = {path: tuple(materials.index(next(bound)) for _ in found) for path, found in slots.items()}
     transforms = np.array([to_metres(reading, placed.world, origin) for placed, _ in geometry.placements])
     ranks = _ranks(transforms.reshape(-1, 4, 4)[:, :3, :3])

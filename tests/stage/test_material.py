@@ -181,6 +181,16 @@ def test_unbound_geometry_is_grey_in_its_display_color(read):
     assert material(scene).uses_display_color and material(scene).surface.diffuse_color == (0.18, 0.18, 0.18)
 
 
+def test_a_binding_to_nothing_is_told_own_or_inherited(read, said):
+    mesh = f'def Mesh "m" {{{QUAD}}}'
+    inherited = (
+        f'def Xform "x" (prepend apiSchemas = ["MaterialBindingAPI"]) {{ rel material:binding = </gone>\n{mesh} }}'
+    )
+    said(read(inherited), "/x/m", "bound to /gone, which is no Material")
+    said(read(bound("").replace("</mat>", "</c>")), "/m", "bound to /c, which is no Material")
+    assert not any("is no Material" in w for w in read(mesh).warnings)
+
+
 def test_display_color_through_a_primvar_reader(read):
     more = """def Shader "p" {
         uniform token info:id = "UsdPrimvarReader_float3"
