@@ -27,8 +27,14 @@ class Scatter:
     weight: wp.vec3
 
 
+@wp.func
+def cut_out(m: MaterialData) -> bool:
+    """Whether opacity removes the surface, its specular reflection included."""
+    return m.presence == 1 or m.opacity_threshold > 0.0
+
+
 def make_bounce(key: KernelKey, rotated, emission_at):
-    """(choose, scatter, glow, pass_through), compiled for ``key``."""
+    """(choose, scatter, glow, pass_through, pass_probability), compiled for ``key``."""
     gather = make_gather(key)
 
     @wp.func
@@ -41,6 +47,7 @@ def make_bounce(key: KernelKey, rotated, emission_at):
         base: Base,
         wo: wp.vec3,
         through: float,
+        passing: float,
         step_x: wp.vec3,
         step_y: wp.vec3,
         u_lobe: wp.vec2,
@@ -91,12 +98,15 @@ def make_bounce(key: KernelKey, rotated, emission_at):
             lobe.wo = to_local(lobe.frame, wo)
             lobe.base = base
             if wp.static(key.opacity):
-                # what passes through was drawn before with probability ``through``
-                keep = 1.0 / wp.max(1.0 - through, 1.0e-6)
                 lobe.w_diffuse *= 1.0 - through
-                if m.presence == 1 or m.opacity_threshold > 0.0:
+        if wp.static(key.opacity):
+            # what passes through was drawn before with probability ``passing``
+            lobe.scale *= 1.0 / wp.max(1.0 - passing, 1.0e-6)
+            if cut_out(m):
+                if lobe.scratch == 0:
                     lobe.w_specular *= 1.0 - through
-                lobe.scale *= keep
+                else:
+                    lobe.scale *= 1.0 - through
         return lobe
 
     @wp.func
@@ -134,10 +144,18 @@ def make_bounce(key: KernelKey, rotated, emission_at):
 
     @wp.func
     def pass_through(m: MaterialData, base: Base, s: Surface, wo: wp.vec3) -> wp.vec3:
-        """Weight of light that goes straight through: what specular reflection leaves (all of it for cut-outs)."""
+        """What specular reflection leaves of light that goes straight through (all of it for cut-outs)."""
         result = wp.vec3(1.0, 1.0, 1.0)
-        if m.presence == 0 and m.opacity_threshold <= 0.0:
+        if not cut_out(m):
             result = result - base_fresnel(base, wp.dot(s.ns, wo))
+        return result
+
+    @wp.func
+    def pass_probability(m: MaterialData, through: float, straight: wp.vec3) -> float:
+        """How often to go on where ``straight`` goes straight on: reflection keeps its share, and a tenth at least."""
+        result = through
+        if not cut_out(m):
+            result = wp.min(largest(straight), 0.9 * through)
         return result
 
     @wp.func
@@ -188,4 +206,4 @@ def make_bounce(key: KernelKey, rotated, emission_at):
                 total += mesh_glow(lights, s, origin, direction, distance, lobe, pdf, phi)
         return total
 
-    return choose, scatter, glow, pass_through
+    return choose, scatter, glow, pass_through, pass_probability

@@ -47,7 +47,7 @@ def make_kernel(key: KernelKey):
     base_at, opacity_at, emission_at, frame_at, rotated = make_base_at(key)
     transmittance = make_transmittance(key, opacity_at)
     direct, seen = make_direct(key, transmittance)
-    choose, scatter, glow, pass_through = make_bounce(key, rotated, emission_at)
+    choose, scatter, glow, pass_through, pass_probability = make_bounce(key, rotated, emission_at)
 
     @wp.kernel(module="unique", module_options={"enable_backward": False})
     def render_pixels(
@@ -91,6 +91,7 @@ def make_kernel(key: KernelKey):
             traveled = float(ray.start)  # from the camera to the last surface, along the path
             depth = int(0)
             passes = int(0)
+            veil = float(1.0)  # what all that was passed through lets through
             pdf = float(-1.0)
             phi = float(0.0)
             instance = int(-1)
@@ -150,11 +151,18 @@ def make_kernel(key: KernelKey):
                     u_base = sobol_2d(index, pair + 1, seed)
                     u_more = sobol_2d(index, pair + 2, seed)
                     through = float(0.0)
+                    passing = float(0.0)
                     if wp.static(key.opacity):
                         if passes < wp.static(MOST_PASSES):
                             through = 1.0 - opacity_at(arrays, m, s.uv)
-                    if wp.static(key.opacity) and sobol_2d(index, pair + 3, seed)[0] < through:
-                        throughput = wp.cw_mul(throughput, pass_through(m, base_at(g, arrays, m, s), s, wo))
+                    straight = wp.vec3(1.0, 1.0, 1.0)
+                    if wp.static(key.opacity):
+                        if through > 0.0:
+                            straight = through * pass_through(m, base_at(g, arrays, m, s), s, wo)
+                            passing = pass_probability(m, through, straight)
+                    if wp.static(key.opacity) and sobol_2d(index, pair + 3, seed)[0] < passing:
+                        throughput = wp.cw_mul(throughput, straight / passing)
+                        veil *= luminance(straight) / passing
                         passes += 1
                         gone += s.t
                         start = s.p - s.offset * s.ng
@@ -194,6 +202,7 @@ def make_kernel(key: KernelKey):
                                 base,
                                 wo,
                                 through,
+                                passing,
                                 step_x,
                                 step_y,
                                 u_lobe,
@@ -263,6 +272,9 @@ def make_kernel(key: KernelKey):
                 film.square[line, column] = film.square[line, column] + y * y
             else:
                 film.invalid[line, column] = film.invalid[line, column] + 1
+            if wp.static(key.opacity):
+                if alpha == 0.0:
+                    alpha = 1.0 - veil
             film.alpha[line, column] = film.alpha[line, column] + alpha
             film.rays[line, column] = film.rays[line, column] + rays
 

@@ -37,7 +37,7 @@ def aovs(sums: Mapping[str, np.ndarray], scene: Scene, samples: int) -> dict[str
     position = (over_hits("position").astype(np.float64) + scene.origin).astype(np.float32)
     return {
         "color": color,
-        "alpha": np.minimum(sums["alpha"] / np.float32(samples), 1.0).astype(np.float32),
+        "alpha": np.clip(sums["alpha"] / np.float32(samples), 0.0, 1.0).astype(np.float32),
         "depth": np.where(seen, over_hits("depth"), np.inf).astype(np.float32),
         "normal": normal,
         "albedo": np.clip(over_hits("albedo"), 0.0, 1.0),

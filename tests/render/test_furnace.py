@@ -10,7 +10,7 @@ estimate says how much, and 6 standard deviations over some 10^5 pixels are met 
 import numpy as np
 import pytest
 
-from scratchwarp.scene import Instance, Material, Profile, ScratchSurface
+from scratchwarp.scene import Instance, Material, PreviewSurface, Profile, ScratchSurface
 
 from . import scenes
 
@@ -99,3 +99,28 @@ def test_rough_surfaces_never_gain_energy(metal, roughness):
     inside = film["alpha"] == 1.0
     noise = np.sqrt(film["variance"][inside].sum()) / inside.sum()
     assert 0.3 < film["color"][inside].mean() < 1.0 + 4 * noise
+
+
+@pytest.mark.parametrize("mode", ["transparent", "presence"])
+@pytest.mark.parametrize("opacity", [0.0, 0.3, 0.9])
+def test_a_pane_vanishes(mode, opacity):
+    """What specular reflection and the white diffuse part do not return passes straight through."""
+    surface = PreviewSurface(diffuse_color=(1.0, 1.0, 1.0), roughness=0.0, ior=1.8, opacity=opacity, opacity_mode=mode)
+    film = look(scenes.plane(1.8), [Material(path="/mat", surface=surface)], spp=256)
+    deviations, _ = excess(film)
+    assert deviations.max() < 6.0
+    assert abs(film["color"].mean() - 1.0) < 1e-3
+    # 8 % are reflected at the normal, nothing by an absent surface
+    middle = film["alpha"][14:18, 14:18]
+    glass = 1.0 - (1.0 - opacity) * (0.92 if mode == "transparent" else 1.0)
+    assert middle.mean() == pytest.approx(glass, abs=0.02)
+
+
+def test_dielectric_scratches_on_glass_are_seen():
+    """They reflect about what the glass does: light lost or gained is that difference, a part of 8 % of the half."""
+    surface = PreviewSurface(roughness=0.0, ior=1.8, opacity=0.0)
+    film = look(scenes.plane(1.8), [scenes.scratched(surface, fresnel="exact")], spp=256)
+    inside = film["alpha"] > 0.07
+    assert inside.sum() > 300
+    assert film["scratches"][inside].mean() > 0.03 and film["base"][inside].mean() > 0.03
+    assert abs(film["color"][inside].mean() - 1.0) < 0.04
