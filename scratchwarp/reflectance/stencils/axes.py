@@ -72,8 +72,11 @@ def further_axes(axes: list[float], left: np.ndarray, where: Pairs) -> list[floa
     return found + apart(peaks(*ridge_curve(left, where)), [*axes, *found])[:1]
 
 
-def detect(where: Pairs, values: np.ndarray, modes: int | None, most: int = 3) -> list[float]:
-    """Azimuths of the axes of ``values`` [n, 3], brightest first; ``modes`` of them, or as many as are worth it."""
+def detect(where: Pairs, values: np.ndarray, modes: int | None, most: int = 3) -> list[np.ndarray]:
+    """Azimuth, width, b and log alpha, [4] each, of the modes of ``values`` [n, 3], the dominant first.
+
+    ``modes`` of them, or as many as are worth it.
+    """
     part, seen = subset(where, values, 700)
     luminance = seen @ _LUMINANCE
     axes = (peaks(*ridge_curve(values @ _LUMINANCE, where)) or [0.0])[:1]
@@ -84,11 +87,16 @@ def detect(where: Pairs, values: np.ndarray, modes: int | None, most: int = 3) -
         if not ridges and modes is None:
             break
         found = ridges[0] if ridges else _widest_gap(axes)
-        better, trial = direct([*axes, found], part, seen)
+        better, trial = direct([*axes, found], part, seen, _shapes(numbers, len(axes)))
         if modes is None and better > _GAIN * error:
             break
-        axes, error, numbers = [*axes, found], better, trial
-    return [float(numbers[MODE * k]) for k in range(len(axes))]
+        error, numbers = better, trial
+        axes = [float(shape[0]) for shape in _shapes(numbers, len(axes) + 1)]
+    return _shapes(numbers, len(axes))
+
+
+def _shapes(numbers: np.ndarray, modes: int) -> list[np.ndarray]:
+    return [numbers[MODE * k : MODE * k + 4].copy() for k in range(modes)]
 
 
 def _widest_gap(axes: list[float]) -> float:

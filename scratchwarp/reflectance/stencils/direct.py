@@ -12,7 +12,7 @@ from itertools import permutations
 import numpy as np
 
 from .angles import Pairs
-from .forward import COLOR, MODE, Band, band, coefficients, count
+from .forward import COLOR, MODE, Band, Q, band, coefficients, count
 
 _WIDTHS = (0.0, 0.45, 0.6, 0.7, 0.8)
 _BS = (-0.02, 0.0, 0.01, 0.03)
@@ -28,6 +28,7 @@ _LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 def subset(where: Pairs, values: np.ndarray, size: int, seed: int = 0) -> tuple[Pairs, np.ndarray]:
     """About ``size`` of the pairs, bright ones more often, weighted so that sums of squares keep their means."""
     luminance = np.abs(values) @ _LUMINANCE
+    luminance = np.minimum(luminance, np.quantile(luminance, 0.999))  # a stray value must not take all the room
     importance = where.weight * (luminance.mean() + luminance + 1e-30)
     share = np.minimum(importance * (size / importance.sum()), 1.0)
     kept = np.random.default_rng(seed).random(len(share)) < share
@@ -55,14 +56,20 @@ def _solve(bands: list[Band], where: Pairs, values: np.ndarray) -> tuple[float, 
     return float(-np.sum(found * right)), found
 
 
-def direct(axes: Sequence[float], where: Pairs, values: np.ndarray) -> tuple[float, np.ndarray]:
-    """(squared error off the specular highlight, numbers) of the fit of modes along ``axes``, in the best order."""
+def direct(
+    axes: Sequence[float], where: Pairs, values: np.ndarray, known: Sequence[np.ndarray] = ()
+) -> tuple[float, np.ndarray]:
+    """(squared error off the specular highlight, numbers) of the fit of modes along ``axes``, in the best order.
+
+    ``known``: azimuth, width, b and log alpha of the first modes, [4] each, where a coarser fit has found them.
+    """
     matte = where.half[:, 2] < _MATTE
-    part = Pairs(*(a[matte] for a in where[:4]), where.member)
+    half, inverse, weight, elevations = (a[matte] for a in where[:4])
+    part = Pairs(half, inverse, weight, elevations, where.member)
     seen = values[matte]
-    shapes = [np.array([a, *TYPICAL]) for a in axes]
+    shapes = [*known, *(np.array([a, *TYPICAL]) for a in axes[len(known) :])]
     order = list(range(len(axes)))
-    for k in order:
+    for k in order[len(known) :]:
         grid = [np.array([axes[k], w, b, np.log(a)]) for w in _WIDTHS for b in _BS for a in _ALPHAS]
         _walk(shapes, k, order, grid, part, seen)
     if len(axes) > 1:
@@ -75,13 +82,15 @@ def direct(axes: Sequence[float], where: Pairs, values: np.ndarray) -> tuple[flo
     error, found = _solve([band(shape, part, derivatives=False) for shape in shapes], part, seen)
     numbers = np.zeros(count(len(axes)))
     for k, shape in enumerate(shapes):
-        flat, peak = found[1 + 2 * k], np.maximum(found[2 + 2 * k], 0.0)
-        if not np.any(peak > 0.0):
-            peak = np.full(3, 1e-6 * np.abs(found).max() + 1e-12)
+        flat, peak = found[1 + 2 * k], found[2 + 2 * k]
+        paint = np.maximum(flat + peak, 0.0)
+        paint = paint / max(np.linalg.norm(paint), 1e-300) if np.any(paint > 0.0) else np.full(3, 3.0**-0.5)
+        kd = max(float(flat @ paint), 0.0)
+        ks = max(float(peak @ paint), 1e-4 * kd, 1e-12)
         row = numbers[MODE * k : MODE * (k + 1)]
-        row[:4] = shape
-        row[4] = np.clip(flat @ peak / (peak @ peak), 0.0, 1e3)
-        row[COLOR:] = peak
+        row[:Q] = shape
+        row[Q] = kd / ks
+        row[COLOR:] = ks * paint
     last = numbers[MODE * (len(axes) - 1) + COLOR :][:3]
     numbers[-3] = background_share(found[0], last)
     numbers[-1] = np.log(30.0)

@@ -48,7 +48,7 @@ def device_model(model: Model, probabilities: np.ndarray, limit: np.ndarray | No
 
 def run(stencil: Any, wi: np.ndarray, wo: np.ndarray, density: bool = False) -> tuple[np.ndarray, np.ndarray]:
     """f_r [n, 3] and density [n] (empty unless asked for) of directions [n, 3], float32."""
-    arrays = [wp.array(np.ascontiguousarray(w, np.float32), dtype=wp.vec3, device="cpu") for w in (wi, wo)]
+    arrays: list[Any] = [wp.array(np.ascontiguousarray(w, np.float32), dtype=wp.vec3, device="cpu") for w in (wi, wo)]
     value = wp.zeros(len(wi), dtype=wp.vec3, device="cpu")
     pdf = wp.zeros(len(wi) if density else 0, dtype=float, device="cpu")
     wp.launch(kernels.evaluate, len(wi), inputs=[stencil, *arrays], outputs=[value, pdf], device="cpu")
@@ -57,7 +57,7 @@ def run(stencil: Any, wi: np.ndarray, wo: np.ndarray, density: bool = False) -> 
 
 def draw(stencil: Any, wo: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Directions [n, 3], weights [n, 3] and densities [n] for views and uniform numbers [n, 3]."""
-    arrays = [wp.array(np.ascontiguousarray(a, np.float32), dtype=wp.vec3, device="cpu") for a in (wo, u)]
+    arrays: list[Any] = [wp.array(np.ascontiguousarray(a, np.float32), dtype=wp.vec3, device="cpu") for a in (wo, u)]
     outputs: list[Any] = [wp.zeros(len(wo), dtype=d, device="cpu") for d in (wp.vec3, wp.vec3, float)]
     wp.launch(kernels.sample, len(wo), inputs=[stencil, *arrays], outputs=outputs, device="cpu")
     wi, weight, pdf = (a.numpy() for a in outputs)

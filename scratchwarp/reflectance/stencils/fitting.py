@@ -1,6 +1,6 @@
 """From a measurement to a stencil model: detection, direct fit, least squares, and again where a mode was hidden."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from itertools import permutations
 from typing import Any, NamedTuple
 
@@ -17,6 +17,7 @@ _MOST_MODES = 3  # that are looked for when nobody says how many; more, where as
 _HIDDEN = 0.8  # a mode found late must bring the squared error below this share
 _USELESS = 1.2  # a mode whose loss raises the squared error by less goes
 _HIGHLIGHTS = ((0.0, np.log(30.0)), (1.3, np.log(30.0)))  # starts of k and the log of its exponent, besides the best
+_PERFECT = 1e-8  # mean squared error, for a maximum of 1, that nobody looks into (80 dB)
 _LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 
@@ -48,11 +49,11 @@ def fit(brdf: Any, modes: int | None = None, refine: bool = True, retro: bool = 
     if top <= 0.0 or float(np.ptp(means, axis=0).max()) <= 1e-9 * top:
         return _constant(means.mean(axis=0), retro)
     means = means / top
-    axes = detect(where, means, modes, _MOST_MODES)
+    shapes = detect(where, means, modes, _MOST_MODES)
     part, seen = subset(where, means, 1500)
-    numbers = _started(axes, part, seen)
+    numbers = _started([float(shape[0]) for shape in shapes], part, seen, shapes)
     if refine:
-        numbers = _refined(numbers, len(axes), modes is None, where, means, _noise(values / top, where, means))
+        numbers = _refined(numbers, len(shapes), modes is None, where, means, _noise(values / top, where, means))
     return to_model(_scaled(numbers, top), (len(numbers) - 2) // (MODE + 1), retro)
 
 
@@ -75,11 +76,12 @@ def _noise(values: np.ndarray, where: Pairs, means: np.ndarray) -> float:
     squares = np.bincount(where.member, np.sum(values**2, axis=-1).ravel(), len(where.weight))
     within = np.maximum(squares - where.weight * np.sum(means**2, axis=1), 0.0)
     several = where.weight > 1.0
-    return float(np.sum(within[several] / (where.weight[several] - 1.0)))
+    scatter = float(np.sum(within[several] / (where.weight[several] - 1.0)))
+    return max(scatter, _PERFECT * 3.0 * float(where.weight.sum()))
 
 
-def _started(axes: list[float], part: Pairs, seen: np.ndarray) -> np.ndarray:
-    _, numbers = direct(axes, part, seen)
+def _started(axes: list[float], part: Pairs, seen: np.ndarray, known: Sequence[np.ndarray] = ()) -> np.ndarray:
+    _, numbers = direct(axes, part, seen, known)
     add_highlight(numbers, model_and_slopes(numbers, len(axes), part)[0], part, seen)
     return numbers
 
@@ -144,6 +146,21 @@ def _searched(best: _Fit, part: Pairs, seen: np.ndarray) -> _Fit | None:
     return _settled(starts, best.modes + 1, part, seen) if starts else None
 
 
+def _shaken(best: _Fit, part: Pairs, seen: np.ndarray) -> _Fit:
+    """The best fit after each mode in turn was taken out and looked for again, where it was and elsewhere."""
+    starts = []
+    for k in range(best.modes):
+        rest = _Fit(
+            best.modes - 1, *least_squares(_without(best.numbers, best.modes, k), best.modes - 1, part, seen, 8)
+        )
+        left = (seen.T - model_and_slopes(rest.numbers, rest.modes, part)[0]).T @ _LUMINANCE
+        axes = [float(rest.numbers[MODE * j + AZIMUTH]) for j in range(rest.modes)]
+        own = float(best.numbers[MODE * k + AZIMUTH])
+        for azimuth in [own, *further_axes([*axes, own], left, part)[:1]]:
+            starts += _extended(rest, azimuth)
+    return min(best, _settled(starts, best.modes, part, seen), key=lambda one: one.error)
+
+
 def _refined(numbers: np.ndarray, modes: int, free: bool, where: Pairs, means: np.ndarray, noise: float) -> np.ndarray:
     part, seen = subset(where, means, 1500)
     best = _settled([reordered(numbers, order) for order in _orders(modes)], modes, part, seen)
@@ -158,6 +175,8 @@ def _refined(numbers: np.ndarray, modes: int, free: bool, where: Pairs, means: n
         if trial.error > _USELESS * max(best.error, noise):
             break
         best = trial
+    if best.modes > 1 and best.error > 2.0 * noise:
+        best = _shaken(best, part, seen)
     half, half_seen = subset(where, means, 4000, seed=1)
     settled, _ = least_squares(best.numbers, best.modes, half, half_seen, 20)
     return least_squares(settled, best.modes, where, means, 4)[0]
