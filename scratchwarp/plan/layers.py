@@ -112,7 +112,10 @@ def plan_layers(
             subs = [s for s in sublayers(layer) if allowed(s.distribution)]
             if not subs:
                 continue
-            fresnel, keeps = reflector(scene, material, layer)
+            try:
+                fresnel, keeps = reflector(scene, material, layer)
+            except ValueError as error:
+                raise ValueError(f"{layer.label}: {error}") from None
             if fresnel is None:
                 color = layer.diffuse_color
                 if layer.material != "diffuse" and isinstance(material.surface, ScratchSurface):
