@@ -4,12 +4,12 @@ import warp as wp
 
 from ..lights.mesh_device import mesh_light_hit, span_mesh
 from ..optics.frames_device import Frame, frame_with_tangent, to_local, to_world
-from ..reflectance.base_device import Base, base_albedo, base_fresnel, base_pdf, base_sample
+from ..reflectance.base_device import Base, base_albedo, base_eval_pdf, base_fresnel, base_pdf, base_sample
 from ..reflectance.profile_table_device import TableArrays, cone_direction, table_row, table_sample
 from .geometry_device import Geometry, Surface
 from .key import KernelKey
 from .layers_device import make_gather
-from .lobe_device import Lobe, largest, mirrored_at, power_heuristic
+from .lobe_device import Lobe, largest, mirrored_at, multiplier, power_heuristic
 from .material_device import MaterialArrays, MaterialData
 from .world_device import LightSet, ScratchSet
 
@@ -25,6 +25,7 @@ class Scatter:
     pdf: float
     phi: float
     weight: wp.vec3
+    diffuse_share: wp.vec3
 
 
 @wp.func
@@ -132,6 +133,11 @@ def make_bounce(key: KernelKey, rotated, emission_at):
                 if b.delta == 1:
                     out.pdf = -1.0
                 else:
+                    if wp.static(key.light_multipliers):
+                        whole = base_eval_pdf(lobe.base, lobe.wo, b.wi, lobe.w_diffuse, lobe.w_specular)
+                        part = base_eval_pdf(lobe.base, lobe.wo, b.wi, lobe.w_diffuse, 0.0)
+                        for c in range(3):
+                            out.diffuse_share[c] = part.value[c] / wp.max(whole.value[c], 1.0e-20)
                     folded = to_local(lobe.frame, mirrored_at(out.direction, s.ng))
                     if folded[2] > 0.0:
                         out.pdf += base_pdf(lobe.base, lobe.wo, folded, lobe.w_diffuse, lobe.w_specular)
@@ -168,6 +174,7 @@ def make_bounce(key: KernelKey, rotated, emission_at):
         lobe: Lobe,
         pdf: float,
         phi: float,
+        depth: int,
     ) -> wp.vec3:
         hit = mesh_light_hit(lights.arrays, lights.lights[s.light], origin, direction, distance, s.ng)
         weight = float(1.0)
@@ -182,7 +189,11 @@ def make_bounce(key: KernelKey, rotated, emission_at):
                         other = 1.0 / wp.max(span.hi - span.lo, 1.0e-7)
             if other > 0.0:
                 weight = power_heuristic(pdf, other)
-        return hit.radiance * weight
+        radiance = hit.radiance * weight
+        if wp.static(key.light_multipliers):
+            if depth > 0:
+                radiance = wp.cw_mul(radiance, multiplier(lights.lights[s.light], lobe))
+        return radiance
 
     @wp.func
     def glow(
@@ -196,6 +207,7 @@ def make_bounce(key: KernelKey, rotated, emission_at):
         lobe: Lobe,
         pdf: float,
         phi: float,
+        depth: int,
     ) -> wp.vec3:
         """Emission of the surface towards the ray that found it; mesh lights weighed against light sampling."""
         total = wp.vec3(0.0, 0.0, 0.0)
@@ -203,7 +215,7 @@ def make_bounce(key: KernelKey, rotated, emission_at):
             total += emission_at(arrays, m, s.uv)
         if wp.static(key.mesh_lights):
             if s.light >= 0 and s.outside == 1:
-                total += mesh_glow(lights, s, origin, direction, distance, lobe, pdf, phi)
+                total += mesh_glow(lights, s, origin, direction, distance, lobe, pdf, phi, depth)
         return total
 
     return choose, scatter, glow, pass_through, pass_probability

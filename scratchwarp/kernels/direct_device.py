@@ -14,7 +14,7 @@ from ..lights.mesh_device import mesh_light_hit
 from ..lights.registry import MODELS
 from ..optics.frames_device import to_local
 from ..optics.sobol_device import sobol_2d
-from ..reflectance.base_device import base_eval_pdf
+from ..reflectance.base_device import base_eval_pdf, base_pdf
 from ..reflectance.profile_table_device import (
     TableArrays,
     cone_direction,
@@ -24,7 +24,7 @@ from ..reflectance.profile_table_device import (
 )
 from .geometry_device import Geometry, interpolate_uv, intersect
 from .key import KernelKey
-from .lobe_device import Lobe, largest, mirrored_at, power_heuristic
+from .lobe_device import Lobe, largest, mirrored_at, multiplier, power_heuristic
 from .material_device import MaterialArrays
 from .world_device import LightSet
 
@@ -108,6 +108,9 @@ def make_direct(key: KernelKey, transmittance):
         terms = base_eval_pdf(lobe.base, lobe.wo, wi, w_diffuse, w_specular)
         reflected = terms.value
         density = terms.pdf
+        if wp.static(key.light_multipliers):
+            # the lobe is sampled without knowing the light
+            density = base_pdf(lobe.base, lobe.wo, wi, lobe.w_diffuse, lobe.w_specular)
         folded = to_local(lobe.frame, mirrored_at(ls.wi, ng))
         if folded[2] > 0.0:
             more = base_eval_pdf(lobe.base, lobe.wo, folded, w_diffuse, w_specular)
@@ -115,10 +118,7 @@ def make_direct(key: KernelKey, transmittance):
             density += more.pdf
         value = wp.cw_mul(reflected, ls.radiance)
         if ls.pdf > 0.0:
-            weight = float(1.0)
-            if wp.static(not key.light_multipliers):
-                weight = power_heuristic(ls.pdf, density)
-            value = value * (weight / ls.pdf)
+            value = value * (power_heuristic(ls.pdf, density) / ls.pdf)
         return value
 
     @wp.func
@@ -255,14 +255,11 @@ def make_direct(key: KernelKey, transmittance):
                                                     other = 1.0 / (span.hi - span.lo)
                                 if other > 0.0:
                                     weight = power_heuristic(pdf, other)
+                            radiance = hit.radiance * weight
                             if wp.static(key.light_multipliers):
-                                # lobes with light sampling count there alone, delta lobes here
                                 if depth > 0:
-                                    if pdf > 0.0 and lobe.scratch != 1:
-                                        weight = 0.0
-                                    else:
-                                        weight *= light.specular
-                            total += hit.radiance * weight
+                                    radiance = wp.cw_mul(radiance, multiplier(light, lobe))
+                            total += radiance
                             if wp.static(finite[j]):
                                 met = 1.0
         return wp.vec4(total[0], total[1], total[2], met)

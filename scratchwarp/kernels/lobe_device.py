@@ -2,6 +2,7 @@
 
 import warp as wp
 
+from ..lights.light_device import Light
 from ..optics.frames_device import Frame
 from ..reflectance.base_device import Base
 
@@ -22,6 +23,7 @@ class Lobe:
     table: int
     row: int
     sin_theta: float  # of the incident cone, sin(theta_i) = -sin(theta_o)
+    diffuse_share: wp.vec3  # part of the base's value that is diffuse in the direction that was sampled from it
 
 
 @wp.struct
@@ -34,6 +36,16 @@ class Layers:
     chosen: int  # layer drawn in proportion to that, or -1
     direction: wp.vec3  # of the chosen scratches, in the tangent plane
     xi: float  # what is left of the random number
+
+
+@wp.func
+def multiplier(light: Light, lobe: Lobe) -> wp.vec3:
+    """What a light's diffuse and specular multipliers make of light that was found along a sampled direction."""
+    one = wp.vec3(1.0, 1.0, 1.0)
+    result = light.specular * one
+    if lobe.scratch != 1:
+        result = light.diffuse * lobe.diffuse_share + light.specular * (one - lobe.diffuse_share)
+    return result
 
 
 @wp.func

@@ -171,7 +171,7 @@ def make_kernel(key: KernelKey):
                         if depth == 0:
                             alpha = 1.0
                         traveled += gone + s.t
-                        glowing = glow(arrays, lights, m, s, origin, direction, gone + s.t, lobe, pdf, phi)
+                        glowing = glow(arrays, lights, m, s, origin, direction, gone + s.t, lobe, pdf, phi, depth)
                         found += wp.cw_mul(throughput, glowing)
                         if depth < window.max_depth:
                             tangent = wp.vec3(0.0, 0.0, 0.0)
@@ -229,6 +229,7 @@ def make_kernel(key: KernelKey):
                             rays += int(received[3])
                             out = scatter(scratches.tables, lobe, s, u_base, u_more[1])
                             step = wp.cw_mul(throughput, out.weight)
+                            lobe.diffuse_share = out.diffuse_share
                             if depth == 0:
                                 film.normal[line, column] = film.normal[line, column] + frame.n
                                 film.albedo[line, column] = film.albedo[line, column] + base_albedo(
