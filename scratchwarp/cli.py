@@ -74,7 +74,10 @@ def render(args: Command) -> int:
         with bar(args.quiet, Path(out).name) as progress:
             film = sw.render(scene, plan, progress=progress, checkpoint=checkpoint, resume=args.resume)
         _warn(film.warnings, told, args.quiet)
-        sw.write(film, out, aovs=layers or None, view=view)
+        asked, foreign = scene.options.layers(AOVS)
+        missing = [f"{args.stage}: a render var asks for {source!r}, which is no layer" for source in foreign]
+        _warn(missing, told, args.quiet)
+        sw.write(film, out, aovs=layers or list(asked) or None, view=view)
         if args.json:
             warnings = tuple(dict.fromkeys(scene.warnings + plan.warnings + film.warnings))
             row = {"image": out, "frame": frame, "warnings": warnings, "stats": dict(film.stats)}

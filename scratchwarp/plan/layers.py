@@ -90,6 +90,52 @@ def _sized(scene: Scene, layer: Layer, curves: int) -> Layer:
     return replace(layer, width=width, depth=depth) if width > 0.0 else layer
 
 
+class _Tables:
+    """Tables asked for so far, each once: layers of one profile, aspect and reflectance share one."""
+
+    def __init__(self, scene: Scene, max_error: float | None) -> None:
+        self._scene, self._max_error = scene, max_error
+        self._plans: dict[tuple[Any, ...], TablePlan] = {}
+
+    def index(self, layer: Layer, curves: int, fresnel: Any) -> int:
+        """Number of the table that a layer (or its explicit set ``curves``) reflects by."""
+        sized, p = _sized(self._scene, layer, curves), layer.profile
+        aspect = sized.depth / sized.width
+        points = b"" if p.points is None else p.points.tobytes()
+        key = (p.shape, points, p.rim, p.rim_width, p.periodic, p.parameters, round(aspect, 12), fresnel)
+        known = self._plans.get(key)
+        if known is None:
+            profile = cross_section(p, sized)
+            reflecting = None if isinstance(fresnel, optics.Mirror) else fresnel
+            model, off = theta_model(profile, reflecting, self._max_error)
+            flat = p.rim == 0.0 and (p.shape == "flat" or aspect == 0.0)
+            known = TablePlan(key, profile, reflecting, 1 if flat else 2000, (), theta_model=model, error=off)
+        if layer.label not in known.users:
+            known = replace(known, users=(*known.users, layer.label))
+        self._plans[key] = known
+        return list(self._plans).index(key)
+
+    def plans(self) -> tuple[TablePlan, ...]:
+        """All of them, by number."""
+        return tuple(self._plans.values())
+
+
+def _complaints(material: Material, layer: Layer, fresnel: Any) -> list[str]:
+    """What of a layer cannot be honoured."""
+    said = []
+    if layer.model in ("diffraction", "groove", "normalMap"):
+        said.append(f"{layer.label}: model {layer.model} is rendered by its profile table for now")
+    if layer.depth_variation > 0.0:
+        said.append(f"{layer.label}: depthVariation {layer.depth_variation:g} is not honoured yet")
+    surface = material.surface
+    if isinstance(surface, PreviewSurface) and layer.material == "inherit" and isinstance(fresnel, optics.Schlick):
+        read = ("specular_color",) if surface.use_specular_workflow else ("diffuse_color", "metallic")
+        textured = [name for name in read if isinstance(getattr(surface, name), TextureInput)]
+        if textured:
+            said.append(f"{layer.label}: scratches reflect by the mean of the textured {textured[0]}")
+    return said
+
+
 def plan_layers(
     scene: Scene, allowed: Callable[[str], bool], max_error: float | None = None
 ) -> tuple[tuple[tuple[LayerPlan, ...], ...], tuple[TablePlan, ...], tuple[str, ...]]:
@@ -97,65 +143,23 @@ def plan_layers(
 
     ``allowed(distribution)``: whether it may be on; ``max_error``: of a table's albedos, None for the default.
     """
-    tables: dict[tuple[Any, ...], int] = {}
-    plans: list[dict[str, Any]] = []
-    warnings: list[str] = []
+    tables = _Tables(scene, max_error)
+    warnings: dict[str, None] = {}
     every: list[tuple[LayerPlan, ...]] = []
-    used = sorted({m for i in scene.instances for m in i.materials})
+    used = {m for i in scene.instances for m in i.materials}
     for number, material in enumerate(scene.materials):
         own: list[LayerPlan] = []
         for layer in material.layers if number in used else ():
-            if layer.model in ("diffraction", "groove", "normalMap"):
-                warnings.append(f"{layer.label}: model {layer.model} is rendered by its profile table for now")
-            if layer.depth_variation > 0.0:
-                warnings.append(f"{layer.label}: depthVariation {layer.depth_variation:g} is not honoured yet")
             subs = [s for s in sublayers(layer) if allowed(s.distribution)]
-            if not subs:
-                continue
-            try:
-                fresnel, keeps = reflector(scene, material, layer)
-            except ValueError as error:
-                raise ValueError(f"{layer.label}: {error}") from None
+            fresnel, keeps = reflector(scene, material, layer)
+            warnings |= dict.fromkeys(_complaints(material, layer, fresnel))
             if fresnel is None:
                 color = layer.diffuse_color
                 if layer.material != "diffuse" and isinstance(material.surface, ScratchSurface):
                     color = material.surface.color
                 own += [LayerPlan(s, -1, False, max(*color, 0.02), color) for s in subs]
-                continue
-            if isinstance(material.surface, PreviewSurface) and layer.material == "inherit":
-                textured = [
-                    n
-                    for n in ("diffuse_color", "metallic", "specular_color")
-                    if isinstance(getattr(material.surface, n), TextureInput)
-                ]
-                if textured and not isinstance(fresnel, optics.Dielectric | optics.Mirror):
-                    warnings.append(f"{layer.label}: scratches reflect by the mean of the textured {textured[0]}")
-            for sub in subs:
-                sized = _sized(scene, layer, sub.curves)
-                p, aspect = layer.profile, sized.depth / sized.width
-                points = b"" if p.points is None else p.points.tobytes()
-                key = (p.shape, points, p.rim, p.rim_width, p.periodic, p.parameters, round(aspect, 12), fresnel)
-                if key not in tables:
-                    tables[key] = len(plans)
-                    flat = p.rim == 0.0 and (p.shape == "flat" or aspect == 0.0)
-                    profile = cross_section(p, sized)
-                    reflecting = None if isinstance(fresnel, optics.Mirror) else fresnel
-                    model, error = theta_model(profile, reflecting, max_error)
-                    plans.append(
-                        {
-                            "profile": profile,
-                            "fresnel": reflecting,
-                            "max_bounces": 1 if flat else 2000,
-                            "theta_model": model,
-                            "error": error,
-                            "users": [],
-                        }
-                    )
-                plans[tables[key]]["users"].append(layer.label)
-                own.append(LayerPlan(sub, tables[key], keeps, lobe_weight(fresnel)))
+            else:
+                weight = lobe_weight(fresnel)
+                own += [LayerPlan(s, tables.index(layer, s.curves, fresnel), keeps, weight) for s in subs]
         every.append(tuple(own))
-    made = tuple(
-        TablePlan(key, users=tuple(dict.fromkeys(row.pop("users"))), **row)
-        for key, row in zip(tables, plans, strict=True)
-    )
-    return tuple(every), made, tuple(dict.fromkeys(warnings))
+    return tuple(every), tables.plans(), tuple(warnings)

@@ -1,9 +1,26 @@
 """What the stage asks the renderer for: UsdRender settings, products and vars."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from .camera import CONFORMS
 from .checks import in_range, one_of
+
+# What other renderers call the layers of a film.
+ALIASES = {
+    "Ci": "color",
+    "rgb": "color",
+    "rgba": "color",
+    "C": "color",
+    "a": "alpha",
+    "A": "alpha",
+    "z": "depth",
+    "Z": "depth",
+    "N": "normal",
+    "Nn": "normal",
+    "position": "P",
+    "id": "primId",
+}
 
 
 @dataclass(frozen=True)
@@ -53,6 +70,17 @@ class RenderOptions:
     filter_width: float | None = None
     effects: tuple[tuple[str, bool], ...] = ()
     products: tuple[RenderProduct, ...] = ()
+
+    def layers(self, known: Iterable[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+        """(layers that the products' vars ask for, in order; sources that are none of ``known``).
+
+        Sources go by the layer's name or by what other renderers call it (``ALIASES``).
+        """
+        sources = dict.fromkeys(var.source for product in self.products for var in product.vars)
+        names = {source: ALIASES.get(source, source) for source in sources}
+        known = set(known)
+        found = tuple(dict.fromkeys(name for name in names.values() if name in known))
+        return found, tuple(source for source, name in names.items() if name not in known)
 
     def __post_init__(self) -> None:
         who = self.path or "render settings"

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import scratchwarp as sw
+from scratchwarp.scene import RenderOptions
 
 
 class Renderer:
@@ -14,11 +15,12 @@ class Renderer:
     def __init__(self):
         self.reads, self.settings, self.renders = [], [], []
         self.warnings = ()
+        self.options = RenderOptions()
         self.during_render = lambda: None
 
     def read(self, path, **how):
         self.reads.append((str(path), how))
-        return SimpleNamespace(path=str(path), warnings=tuple(self.warnings))
+        return SimpleNamespace(path=str(path), warnings=tuple(self.warnings), options=self.options)
 
     def make_plan(self, scene, settings):
         self.settings.append(settings)

@@ -4,6 +4,7 @@ import pytest
 
 from scratchwarp import image
 from scratchwarp.cli import main
+from scratchwarp.scene import RenderOptions, RenderProduct, RenderVar
 
 
 def status(*argv):
@@ -166,3 +167,14 @@ def test_explain(renderer, capsys):
 def test_help_has_examples(command, capsys):
     assert status(command, "--help") == 0
     assert f"examples:\n  scratchwarp {command}" in capsys.readouterr().out
+
+
+def test_render_vars_of_the_stage_choose_the_layers(tmp_path, renderer, capsys):
+    """By our names or by other renderers'; the command line comes first, and what we lack is told."""
+    names = [RenderVar("beauty", "Ci"), RenderVar("z", "z"), RenderVar("cat", "cats")]
+    renderer.options = RenderOptions(products=(RenderProduct("/Render/P", "p", tuple(names)),))
+    assert main(["render", "ball.usda", str(tmp_path / "a.npz")]) == 0
+    assert set(image.read_layers(tmp_path / "a.npz")[0]) == {"color", "alpha", "depth"}
+    assert "'cats'" in capsys.readouterr().err
+    assert main(["render", "ball.usda", str(tmp_path / "b.npz"), "--aov", "alpha"]) == 0
+    assert set(image.read_layers(tmp_path / "b.npz")[0]) == {"color", "alpha"}
