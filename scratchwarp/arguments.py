@@ -235,7 +235,7 @@ def parser() -> argparse.ArgumentParser:
         "--frames", "-f", metavar="SPEC", help="101:110x3,115 is 101, 104, 107, 110 and 115 [the earliest]"
     )
     when.add_argument("--defaultTime", "-d", action="store_true", help="defaults, even of attributes with samples")
-    made.add_argument("--aov", action="append", default=[], metavar="NAMES", help="layers beside color [the stage's vars]")
+    made.add_argument("--aov", action="append", default=[], metavar="NAMES", help="layers written [the stage's vars]")
     made.add_argument("--checkpoint", metavar="FILE", help="keep finished tiles here while rendering")
     made.add_argument("--resume", action="store_true", help="start from the tiles of --checkpoint")
     add_settings(made)
