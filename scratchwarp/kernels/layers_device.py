@@ -1,4 +1,9 @@
-"""What each layer covers under a sample's footprint, and one of them drawn in proportion (Raymond 2016 Eq. 3, 4)."""
+"""What each layer covers under a sample's footprint, and one of them drawn in proportion (Raymond 2016 Eq. 3, 4).
+
+Together layers cover 1 - product (1 - alpha_k), shared in proportion to alpha_k. Where one layer at most is there or
+all are resolved, that is Eq. 4 as printed; where footprints hold many scratches of several layers, Eq. 4's plain sum
+would count the area twice where they cross, and a material would grow more scratched with distance.
+"""
 
 import warp as wp
 
@@ -55,6 +60,7 @@ def make_gather(key: KernelKey):
         across = wp.cross(outward, flat)
 
         total = float(0.0)
+        bare = float(1.0)
         kept = float(0.0)
         weight = float(0.0)
         xi = float(u)
@@ -84,6 +90,7 @@ def make_gather(key: KernelKey):
                     stroke = drawn.direction
             if hit.alpha > SMALLEST_COVERAGE:
                 total += hit.alpha
+                bare *= 1.0 - wp.min(hit.alpha, 1.0)
                 if layer.keeps_diffuse == 1:
                     kept += hit.alpha
                 part = hit.alpha * layer.weight
@@ -106,8 +113,10 @@ def make_gather(key: KernelKey):
                     result.direction = along * frame.x + side * frame.y
                 else:
                     xi = (xi - p) / wp.max(1.0 - p, 1.0e-7)
-        share = 1.0 / wp.max(total, 1.0)
-        result.covered = total * share
+        share = float(0.0)
+        if total > 0.0:
+            share = (1.0 - bare) / total
+        result.covered = 1.0 - bare
         result.kept = kept * share
         result.weight = weight * share
         result.xi = wp.clamp(xi, 0.0, 0.9999999)
