@@ -45,9 +45,10 @@ def _statistical(layer: Layer, angle: float, share: float, seed: int, offset: tu
     variation = layer.width_variation
     if width <= 0.0:
         return None
-    if layer.density > 0.0 and layer.space == "surface":
-        # one scratch a cell: cell area = length width / (4 d^2) = 1 / density
-        radius = math.sqrt(layer.density * share * 1e-6 * length * width) / 2.0
+    if layer.density > 0.0:
+        # one scratch a cell: cell area = length width / (4 d^2) = 1 / density; a square millimetre is 1e6 um^2
+        unit = 1e-6 if layer.space == "surface" else 1.0
+        radius = math.sqrt(layer.density * share * unit * length * width) / 2.0
         covered = worley.coverage(min(radius, 10.0), variation)
     else:
         covered = 1.0 - (1.0 - layer.coverage) ** share

@@ -49,3 +49,17 @@ def test_random_scratches_cross_at_any_distance_alike():
     """From afar the sum of the sets' shares, 12 (1 - 0.5^(1/12)) = 0.67, would count crossings twice."""
     near, far = covered("random", 0.5, 10000.0, width=192, height=192), covered("random", 0.5, 20.0)
     assert far == pytest.approx(0.5, abs=2e-3) and near == pytest.approx(far, abs=0.03)
+
+
+@pytest.mark.parametrize("space", ["surface", "uv"])
+def test_density_counts_scratches(space):
+    """Ellipses of 20 um by 1 mm, four a square millimetre: each adds pi / 4 of its box, few of them overlap."""
+    size, density = np.array([20.0, 1000.0]), 4.0
+    if space == "uv":  # the plane, 2 m wide, is the uv square
+        size, density = size / 2e6, density * 4e6
+    fields = {"width": size[0], "depth": 0.3 * size[0], "length": size[1], "density": density, "space": space}
+    material = scenes.scratched(BLACK, **fields)
+    placed = [scenes.place(at=(0, 0, -6))]
+    world = scenes.scene([scenes.plane(2.0)], [material], [scenes.dome()], placed, scenes.camera(15.0))
+    share = np.pi / 4 * 4 * 0.02 * 1.0
+    assert scenes.shoot(world)["color"].mean() == pytest.approx(share, rel=0.05)
