@@ -37,10 +37,11 @@ def outline_array(scratches: Sequence[Scratch]) -> Any:
 def rules(counts: tuple[int, ...]) -> Rules:
     """Gauss-Legendre rules over [0, 1] of these numbers of nodes."""
     first = np.zeros(max(counts) + 1, np.int32)
-    nodes, weights = [], []
+    nodes: list[np.ndarray] = []
+    weights: list[np.ndarray] = []
     for n in sorted(set(counts)):
         x, w = np.polynomial.legendre.leggauss(n)
-        first[n] = sum(len(x) for x in nodes)
+        first[n] = sum(part.size for part in nodes)
         nodes.append(0.5 + 0.5 * x)
         weights.append(0.5 * w)
     made = Rules()

@@ -106,7 +106,7 @@ def fringe_table() -> FringeTable:
         rows[part, 1] = -(sine * k) @ density
         rows[part, 2] = -(cosine * k**2) @ density
         rows[part, 3] = (sine * k**3) @ density
-    table = FringeTable()
+    table: Any = FringeTable()
     table.step = _STEP
     table.rows = device_array(rows, vec3)
     return table

@@ -1,8 +1,8 @@
 """What a pixel's footprint on the surface, an ellipse, sees of one scratch: means over it, on the device.
 
 Across the scratch the ellipse reaches h = hypot(a1 sin, a2 cos), ``angle`` from the scratch to axis a1; at a distance y
-it is 2 a1 a2 sqrt(1 - y^2 / h^2) / h long. What is averaged is e^{-y^2 / w^2} around the scratch: w = sigma for |eta_s|^2
-(Velinov et al. 2018 Eq. 13), sqrt(2) sigma for the density of Eq. 17.
+it is 2 a1 a2 sqrt(1 - y^2 / h^2) / h long. What is averaged is e^{-y^2 / w^2} around the scratch: w = sigma for
+|eta_s|^2 (Velinov et al. 2018 Eq. 13), sqrt(2) sigma for the density of Eq. 17.
 """
 
 import warp as wp

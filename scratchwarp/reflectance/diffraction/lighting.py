@@ -6,11 +6,11 @@ import numpy as np
 
 from . import slice_device
 from .arrays import DEVICE, device_array, launch, outline_array, rules
-from .reflection import PHASES
 from .inputs import common_shape, directions, numbers, option
 from .light import Light, PolygonLight, SphereLight
 from .quadrature import quadrature
 from .real_device import vec2, vec3
+from .reflection import PHASES
 from .scratch import Scratch
 from .scratch_device import WaveScratch
 

@@ -11,9 +11,9 @@ through the first point that the outline has there.
 import warp as wp
 
 from .quadrature_device import Rules
-from .real_device import HALF, ONE, TWO, ZERO, real, vec3
+from .real_device import ONE, TWO, ZERO, real, vec3
 from .scratch_device import WaveScratch, to_scratch
-from .slice_device import Lobe, LobeTables, SliceSum, add_crossing
+from .slice_device import Breaks, Lobe, LobeTables, SliceSum, add_crossing
 
 _BEYOND = wp.constant(real(4.0))
 _PARALLEL = wp.constant(real(1.0e-12))
@@ -87,8 +87,8 @@ def clipped_edge(light: PolygonView, s: WaveScratch, i: int) -> ClippedEdge:
 
 
 @wp.func
-def _spread(breaks: vec3, a: vec3, b: vec3, after: real) -> vec3:
-    """Take the ends and the turning point of an edge into (least, greatest, next u)."""
+def _spread(breaks: Breaks, a: vec3, b: vec3, after: real) -> Breaks:
+    """Take in the ends and the turning point of an edge."""
     r = breaks
     ua = a[0] / wp.max(wp.length(a), real(1.0e-300))
     ub = b[0] / wp.max(wp.length(b), real(1.0e-300))
@@ -100,22 +100,27 @@ def _spread(breaks: vec3, a: vec3, b: vec3, after: real) -> vec3:
         grows = m[1] * a[2] - m[2] * a[1]
         if (grows > ZERO) != (m[1] * b[2] - m[2] * b[1] > ZERO):
             turn = wp.sign(grows) * wp.sqrt(m[1] * m[1] + m[2] * m[2])
-    r[0] = wp.min(r[0], wp.min(ua, wp.min(ub, turn)))
-    r[1] = wp.max(r[1], wp.max(ua, wp.max(ub, turn)))
+    r.low = wp.min(r.low, wp.min(ua, wp.min(ub, turn)))
+    r.high = wp.max(r.high, wp.max(ua, wp.max(ub, turn)))
     if ua > after:
-        r[2] = wp.min(r[2], ua)
+        r.following = wp.min(r.following, ua)
     if ub > after:
-        r[2] = wp.min(r[2], ub)
+        r.following = wp.min(r.following, ub)
     if turn > after:
-        r[2] = wp.min(r[2], turn)
+        r.following = wp.min(r.following, turn)
     return r
 
 
 @wp.func
-def polygon_breaks(light: PolygonView, s: WaveScratch, after: real) -> vec3:
-    """Least and greatest u of the part above the horizon, and the next u beyond ``after`` where its outline has a
-    corner or turns (4: none). Least above greatest: nothing is above."""
-    r = vec3(TWO, -TWO, _BEYOND)
+def polygon_breaks(light: PolygonView, s: WaveScratch, after: real) -> Breaks:
+    """The extent of the part above the horizon, and the next u beyond ``after`` where its outline has a corner or
+    turns."""
+    r = Breaks()
+    r.low = TWO
+    r.high = -TWO
+    r.round_low = 1
+    r.round_high = 1
+    r.following = _BEYOND
     known = int(0)
     start = vec3(ZERO, ZERO, ZERO)
     if light.flat == 0:

@@ -26,7 +26,8 @@ def quadrature(
     ends = None if s.ends is None else np.broadcast_to(s.ends, (*shape, 2)).reshape(-1, 2)
     if isinstance(light, SphereLight):
         radius = np.broadcast_to(light.radius, shape)[..., None]
-        geometry = np.concatenate((np.broadcast_to(light.center, (*shape, 3)), radius), axis=-1).reshape(-1, 4)
+        spheres = np.concatenate((np.broadcast_to(light.center, (*shape, 3)), radius), axis=-1)
+        geometry: np.ndarray = spheres.reshape(-1, 4)
     else:
         corners = light.vertices.shape[-2]
         geometry = np.broadcast_to(light.vertices, (*shape, corners, 3)).reshape(-1, corners, 3)
@@ -47,10 +48,8 @@ def _composite(edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Nodes and weights of 16 each between the last axis' edges."""
     half = 0.5 * np.diff(edges, axis=-1)[..., None]
     middle = 0.5 * (edges[..., 1:] + edges[..., :-1])[..., None]
-    lead = edges.shape[:-1]
-    return (middle + half * _NODES).reshape(*lead, -1), np.broadcast_to(half * _WEIGHTS, (*half.shape[:-1], 16)).reshape(
-        *lead, -1
-    )
+    flat = (*edges.shape[:-1], -1)
+    return (middle + half * _NODES).reshape(flat), (half * _WEIGHTS).reshape(flat)
 
 
 class _Cap:
@@ -199,7 +198,7 @@ class _Lobe:
             return np.zeros_like(xi1)
         fringes = length * np.abs(xi1).max() / self.wave
         panels = int(np.ceil(length / self.sigma + fringes / 1.5)) + 1
-        x, weight = _composite(np.linspace(*self.ends, panels + 1))
+        x, weight = _composite(np.linspace(self.ends[0], self.ends[1], panels + 1))
         weight = weight * np.exp(-0.5 * (x / self.sigma) ** 2)
         field = np.concatenate([np.exp(-1j * self.k * part[:, None] * x) @ weight for part in _chunks(xi1, len(x))])
         return np.abs(field) ** 2 / (2.0 * np.pi * self.sigma**2)

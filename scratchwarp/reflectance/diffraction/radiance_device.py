@@ -16,7 +16,7 @@ from .complex_device import power
 from .quadrature_device import Rules, rule_node, rule_weight
 from .real_device import HALF, ONE, PI, TWO, ZERO, real
 from .scratch_device import along_amplitude, along_share, is_finite, offset_weight
-from .slice_device import Lobe, LobeTables, slice_value
+from .slice_device import Breaks, Lobe, LobeTables, slice_value
 
 SLICES = wp.constant(0)
 """Method: slices."""
@@ -25,10 +25,11 @@ CLOSED_FORM = wp.constant(1)
 
 _SQRT_PI = wp.constant(real(1.7724538509055159))
 _COVERED = wp.constant(real(3.0))  # erfc(3) = 2e-5
-_WELL_COVERED = wp.constant(real(4.5))
+_WELL_COVERED = wp.constant(real(3.4))
 _FEW = wp.constant(4)  # slices up to which accuracy is about 1e-3 and worth no more nodes
 _STEP = wp.constant(real(1.5))
 _FALL = wp.constant(real(1.5))
+_CLOSE = wp.constant(real(0.25))  # to the peak: too little for a step of its own
 _SHORT = wp.constant(real(0.8))  # what one step takes with both of its ends round
 _LAST = wp.constant(real(12.0))  # e^{-12}, of the greatest, is where few slices stop
 _LAST_FINE = wp.constant(real(30.0))
@@ -37,8 +38,8 @@ _END_NODES = wp.constant(16)  # for each slice, where ends make the lobe wide an
 
 @wp.struct
 class Range:
-    """Part of a light between u0 and u1, x0 and x1; whether the light ``begins`` at the one and ``ends`` at the other;
-    ``nearest``: the least |x| of the whole light."""
+    """Part of a light between u0 and u1, x0 and x1; whether it ``begins`` round at the one and ``ends`` round at the
+    other; ``nearest``: the least |x| of the whole light."""
 
     u0: real
     u1: real
@@ -123,8 +124,8 @@ def at_edge(p: Range, x: real) -> int:
 
 
 def make_radiance(view: Any, breaks: Callable[..., Any], cut: Callable[..., Any]) -> Any:
-    """The device function ``radiance(light, lobe, tables, rules, method, slices)`` of a kind of light: its struct, where
-    it begins, ends or has corners in u, and what a slice cuts out of it."""
+    """The device function ``radiance(light, lobe, tables, rules, method, slices)`` of a kind of light: its struct,
+    where it begins, ends or has corners in u, and what a slice cuts out of it."""
 
     @wp.func
     def at(light: view, lobe: Lobe, tables: LobeTables, rules: Rules, p: Range, x: real) -> real:
@@ -135,7 +136,7 @@ def make_radiance(view: Any, breaks: Callable[..., Any], cut: Callable[..., Any]
     def walk(
         light: view, lobe: Lobe, tables: LobeTables, rules: Rules, p: Range, start: real, stop: real
     ) -> real:
-        """Integral of e^{-x^2} g from ``start``, nearest to 0, to ``stop`` on the same side."""
+        """Integral of e^{-x^2} g from ``start``, near 0 or nearest to it, to ``stop``."""
         total = real(0.0)
         side = wp.where(stop > start, ONE, -ONE)
         x = real(start)
@@ -167,9 +168,9 @@ def make_radiance(view: Any, breaks: Callable[..., Any], cut: Callable[..., Any]
     def ranged(light: view, lobe: Lobe, tables: LobeTables, rules: Rules, p: Range) -> real:
         """Integral of e^{-x^2} g over the range."""
         total = real(0.0)
-        if p.x0 >= ZERO or (p.x0 > -ONE and p.x1 - p.x0 < _STEP):
+        if p.x0 >= -_CLOSE or (p.x1 > ZERO and p.x1 - p.x0 < _STEP):
             total = walk(light, lobe, tables, rules, p, p.x0, p.x1)
-        elif p.x1 <= ZERO or (p.x1 < ONE and p.x1 - p.x0 < _STEP):
+        elif p.x1 <= _CLOSE:
             total = walk(light, lobe, tables, rules, p, p.x1, p.x0)
         else:
             total = walk(light, lobe, tables, rules, p, ZERO, p.x1)
@@ -195,7 +196,7 @@ def make_radiance(view: Any, breaks: Callable[..., Any], cut: Callable[..., Any]
 
     @wp.func
     def sliced(
-        light: view, lobe: Lobe, tables: LobeTables, rules: Rules, low: real, high: real, slices: int
+        light: view, lobe: Lobe, tables: LobeTables, rules: Rules, extent: Breaks, slices: int
     ) -> real:
         """Integral of the Gaussian, or of |eta|^2, and g over x from corner to corner."""
         total = real(0.0)
@@ -203,18 +204,26 @@ def make_radiance(view: Any, breaks: Callable[..., Any], cut: Callable[..., Any]
         p = Range()
         p.sharpness = TWO * PI * s.sigma / lobe.wavelength
         p.slices = slices
+        low = extent.low
+        high = extent.high
         x0 = p.sharpness * (low + lobe.omega_o[0])
         x1 = p.sharpness * (high + lobe.omega_o[0])
         p.nearest = wp.max(wp.max(x0, -x1), ZERO)
         finite = is_finite(s)
         length = wp.min(s.end, TWO * s.sigma) - wp.max(s.start, -TWO * s.sigma)
         scale = ONE + s.sigma / wp.max(length, real(0.01) * s.sigma)
-        p.u0 = low
-        p.begins = 1
-        while p.u0 < high:
+        first = real(low)
+        last = real(high)
+        if not finite:
+            reach = wp.sqrt(wp.where(slices <= _FEW, _LAST, _LAST_FINE) + p.nearest * p.nearest) / p.sharpness
+            first = wp.max(low, -lobe.omega_o[0] - reach)
+            last = wp.min(high, -lobe.omega_o[0] + reach)
+        p.u0 = first
+        p.begins = wp.where(first == low, extent.round_low, 0)
+        while p.u0 < last:
             following = breaks(light, s, p.u0)
-            p.u1 = wp.min(following[2], high)
-            p.ends = wp.where(p.u1 >= high, 1, 0)
+            p.u1 = wp.min(following.following, last)
+            p.ends = wp.where(p.u1 == high, extent.round_high, 0)
             p.x0 = p.sharpness * (p.u0 + lobe.omega_o[0])
             p.x1 = p.x0 + p.sharpness * (p.u1 - p.u0)
             n = hermite_nodes(p)
@@ -241,12 +250,12 @@ def make_radiance(view: Any, breaks: Callable[..., Any], cut: Callable[..., Any]
         r = real(0.0)
         s = lobe.scratch
         extent = breaks(light, s, -TWO)
-        if lobe.omega_o[2] > ZERO and extent[0] < extent[1]:
+        if lobe.omega_o[2] > ZERO and extent.low < extent.high:
             if method == SLICES:
-                r = sliced(light, lobe, tables, rules, extent[0], extent[1], slices)
+                r = sliced(light, lobe, tables, rules, extent, slices)
             else:
                 u = -lobe.omega_o[0]
-                if u > extent[0] and u < extent[1]:
+                if u > extent.low and u < extent.high:
                     value = slice_value(cut(light, lobe, tables, rules, u), lobe)
                     r = value * along_share(s) * _SQRT_PI * lobe.wavelength / (TWO * PI * s.sigma)
         return TWO * offset_weight(s) * r

@@ -1,9 +1,10 @@
 """The scalar of wave optics on the device: float64.
 
 The Gaussian along a scratch depends on sigma k xi_1, where xi_1 is the sum of two direction cosines and sigma k about
-1000: rounding the cosines to float32 moves the argument by 1e-4 and the value, three widths off, by 6e-4; phases k (g_i
-+ g_o) D reach hundreds of radians. float64 costs 1.1 to 1.4 times the time in scalar code on the CPU and needs none of
-the detours of float32. Results are rounded where they join colours.
+1000: rounding the cosines to float32 moves the argument by 1e-4 and the value, three widths off, by 6e-4. Measured over
+random views near the peak, float32 leaves 1e-4 (95 %) and 3e-2 (worst) in the BRDF and 11 % in the worst radiance of a
+5 cm light at 1 m. float64 costs 1.2 times the time for spheres, up to 1.9 times for polygons, and needs none of the
+detours of float32.
 """
 
 import warp as wp

@@ -8,7 +8,7 @@ import numpy as np
 from .arrays import device_array, launch, outline_array
 from .inputs import common_shape, directions, numbers, option
 from .real_device import vec3
-from .scratch import Scratch
+from .scratch import Scratch, row_dtype
 from .scratch_device import WaveScratch
 
 PHASES = ("small-angle", "angle-dependent")
@@ -62,7 +62,7 @@ def brdf_coherent(
         rows.append(s.to_rows(shape if own else (), first))
         first += len(s.facets)
     columns = int(np.prod(shape)) if own else 1
-    table = np.stack(rows) if rows else np.zeros((0, columns), WaveScratch.numpy_dtype())
+    table = np.stack(rows) if rows else np.zeros((0, columns), row_dtype())
     sigmas = device_array(np.broadcast_to(sigma, shape).reshape(-1))
     dependent = int(option("phase", phase, PHASES) == "angle-dependent")
     arguments = device_array(table, WaveScratch), outline_array(scratches), dependent, sigmas, float(bool(base))

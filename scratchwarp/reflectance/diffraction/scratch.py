@@ -87,9 +87,7 @@ class Scratch:
 
     def to_rows(self, shape: tuple[int, ...], first: int = 0) -> np.ndarray:
         """Structured array for the device, one row for each value of ``shape``; its outline begins at row ``first``."""
-        from .scratch_device import WaveScratch
-
-        rows = np.zeros(shape, WaveScratch.numpy_dtype())
+        rows = np.zeros(shape, row_dtype())
         turned = numbers("azimuth", self.azimuth)
         rows["cosine"], rows["sine"] = np.cos(turned), np.sin(turned)
         rows["width"], rows["depth"], rows["offset"] = self.width, self.depth, self.offset
@@ -99,6 +97,14 @@ class Scratch:
         rows["end"] = np.inf if self.ends is None else self.ends[..., 1]
         rows["first"], rows["count"] = first, len(self.facets)
         return rows.reshape(-1)
+
+
+def row_dtype() -> Any:
+    """Fields of a row of ``Scratch.to_rows``."""
+    from .scratch_device import WaveScratch
+
+    struct: Any = WaveScratch
+    return struct.numpy_dtype()
 
 
 def _ends(value: Any) -> np.ndarray:

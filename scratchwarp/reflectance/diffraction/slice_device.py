@@ -49,8 +49,20 @@ class Lobe:
 
 
 @wp.struct
+class Breaks:
+    """Least and greatest u of what is seen of a light (``low`` >= ``high``: nothing), whether its width grows there as
+    a square root or more gently, and the next u at which it has a corner (4: none)."""
+
+    low: real
+    high: real
+    round_low: int
+    round_high: int
+    following: real
+
+
+@wp.struct
 class SliceSum:
-    """What the crossings of one slice have added up to; ``signs`` of all begun minus ended, 0 when done."""
+    """What the crossings of one slice have added up to."""
 
     steps: int
     rest: real

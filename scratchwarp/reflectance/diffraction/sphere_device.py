@@ -8,71 +8,89 @@ without quadratic equations, for lights of any size.
 import warp as wp
 
 from .quadrature_device import Rules
-from .real_device import HALF, ONE, PI, TWO, ZERO, real, vec3
+from .real_device import HALF, ONE, PI, TWO, ZERO, real, vec3, vec4
 from .scratch_device import WaveScratch, to_scratch
-from .slice_device import Lobe, LobeTables, SliceSum, add_crossing
+from .slice_device import Breaks, Lobe, LobeTables, SliceSum, add_crossing
 
 _BEYOND = wp.constant(real(4.0))
 
 
 @wp.struct
 class SphereView:
-    """A sphere seen from the origin in the frame of a scratch; ``around``: the origin lies in it."""
+    """A sphere seen from the origin in the frame of a scratch; ``around``: the origin lies in it. ``marks``: u where
+    its rim turns, begins to go all round or meets the horizon, 4 for none."""
 
     p: vec3
     half_angle: real
     around: int
+    rho: real
+    middle: real
+    extent: Breaks
+    marks: vec4
 
 
 @wp.func
 def view_sphere(center: vec3, radius: real, s: WaveScratch) -> SphereView:
     """Look at a sphere given in the shading frame."""
     r = SphereView()
+    e = Breaks()
+    r.marks = vec4(_BEYOND, _BEYOND, _BEYOND, _BEYOND)
     biggest = wp.max(wp.max(wp.abs(center[0]), wp.abs(center[1])), wp.max(wp.abs(center[2]), radius))
-    if biggest > ZERO:
+    if radius > ZERO:
         c = to_scratch(s, center / biggest)
         distance = wp.length(c)
         sine = radius / biggest
         if distance <= sine:
             r.around = 1
-            r.half_angle = PI
-            r.p = vec3(ZERO, ZERO, ONE)
+            e.low = -ONE
+            e.high = ONE
         else:
             r.p = c / distance
             # asin(R / d) in a form that is exact for both small and grazing spheres
-            r.half_angle = wp.atan2(sine, wp.sqrt((distance - sine) * (distance + sine)))
+            a = wp.atan2(sine, wp.sqrt((distance - sine) * (distance + sine)))
+            r.half_angle = a
+            r.rho = wp.sqrt(r.p[1] * r.p[1] + r.p[2] * r.p[2])
+            r.middle = wp.atan2(r.p[1], r.p[2])
+            from_axis = wp.atan2(r.rho, r.p[0])
+            rim_low = wp.cos(from_axis + a)
+            rim_high = wp.cos(from_axis - a)
+            r.marks = vec4(rim_low, rim_high, _BEYOND, _BEYOND)
+            e.low = wp.where(from_axis + a >= PI, -ONE, rim_low)
+            e.high = wp.where(from_axis <= a, ONE, rim_high)
+            e.round_low = 1
+            e.round_high = 1
+            flat = wp.sqrt(r.p[0] * r.p[0] + r.p[1] * r.p[1])
+            level = wp.cos(a)
+            if flat > level:
+                at = wp.atan2(r.p[1], r.p[0])
+                spread = wp.acos(level / flat)
+                left = wp.cos(at - spread)
+                right = wp.cos(at + spread)
+                r.marks = vec4(rim_low, rim_high, left, right)
+                if r.p[2] < ZERO:
+                    # its widest part is below the horizon, where the rest begins and ends flat
+                    if e.low > -ONE:
+                        e.low = wp.min(left, right)
+                        e.round_low = 0
+                    if e.high < ONE:
+                        e.high = wp.max(left, right)
+                        e.round_high = 0
+            elif r.p[2] < ZERO:
+                e.low = ZERO
+                e.high = ZERO
+    r.extent = e
     return r
 
 
 @wp.func
-def sphere_breaks(light: SphereView, s: WaveScratch, after: real) -> vec3:
-    """Least and greatest u of the cap, and the next u beyond ``after`` where it begins, ends or meets the horizon (4:
-    none)."""
-    if light.around != 0 or light.half_angle == ZERO:
-        e = wp.where(light.around != 0, ONE, ZERO)
-        return vec3(-e, e, _BEYOND)
-    p = light.p
-    a = light.half_angle
-    from_axis = wp.atan2(wp.sqrt(p[1] * p[1] + p[2] * p[2]), p[0])
-    rim_low = wp.cos(from_axis + a)
-    rim_high = wp.cos(from_axis - a)
-    low = wp.where(from_axis + a >= PI, -ONE, rim_low)
-    high = wp.where(from_axis <= a, ONE, rim_high)
-    following = real(_BEYOND)
-    if rim_low > after:
-        following = rim_low
-    if rim_high > after:
-        following = wp.min(following, rim_high)
-    flat = wp.sqrt(p[0] * p[0] + p[1] * p[1])
-    level = wp.cos(a)
-    if flat > level:
-        middle = wp.atan2(p[1], p[0])
-        spread = wp.acos(level / flat)
-        for side in range(2):
-            at = wp.cos(middle + real(2 * side - 1) * spread)
-            if at > after:
-                following = wp.min(following, at)
-    return vec3(low, high, following)
+def sphere_breaks(light: SphereView, s: WaveScratch, after: real) -> Breaks:
+    """Its extent, and the next of its marks beyond ``after``."""
+    r = light.extent
+    r.following = _BEYOND
+    for i in range(4):
+        if light.marks[i] > after:
+            r.following = wp.min(r.following, light.marks[i])
+    return r
 
 
 @wp.func
@@ -96,12 +114,12 @@ def cut_sphere(light: SphereView, lobe: Lobe, tables: LobeTables, rules: Rules, 
         return _add_interval(r, lobe, tables, rules, u, -half_turn, half_turn)
     p = light.p
     s = wp.sqrt(wp.max((ONE - u) * (ONE + u), ZERO))
-    rho = wp.sqrt(p[1] * p[1] + p[2] * p[2])
+    rho = light.rho
     e = wp.atan2(wp.abs(s * p[0] - rho * u), s * rho + u * p[0])
     a = light.half_angle
     if e < a:
         sine2 = wp.sin(HALF * (a - e)) * wp.sin(wp.min(HALF * (a + e), half_turn))
-        middle = wp.atan2(p[1], p[2])
+        middle = light.middle
         if sine2 >= s * rho:
             r = _add_interval(r, lobe, tables, rules, u, -half_turn, half_turn)
         else:
