@@ -84,20 +84,23 @@ APERTURE = """float horizontalAperture = 20
 """
 
 
-def pair(folder, text, light, window, pixel, size, camera=APERTURE, metadata="", focal=35, spp=1024):
+def pair(
+    folder, text, light, window, pixel, size, camera=APERTURE, metadata="", focal=35, lens=None, spp=1024, bounces=0
+):
     """(our film, Mitsuba's image and variance) of the ball under one light.
 
     Args:
         text: more of the stage; camera: more of the camera; metadata: of the stage. light: Mitsuba's light.
         window: what the image shows (left, right, bottom, top), ``focal`` away; pixel: Mitsuba's, to be binned.
-        size: of the image.
+        size: of the image; lens: Mitsuba's (aperture radius, focus distance). bounces: between surfaces.
     """
     materials = "".join(MATERIAL.format(name=n, color=c) for n, c in (("warm", BALL), ("cool", FLOOR)))
     file = folder / "stage.usda"
     file.write_text(STAGE.replace("CAMERA", camera).replace("METADATA", metadata) + materials + text)
     world = sw.read(file)
     assert not world.warnings
-    ours = scenes.shoot(world, width=size[0], height=size[1], spp=spp)
+    traced = {"integrator": "path", "max_depth": 1 + bounces} if bounces else {}
+    ours = scenes.shoot(world, width=size[0], height=size[1], spp=spp, **traced)
     assert ours.stats["invalid_samples"] == 0
     ball = {"type": "sphere", "center": [0.2, 1, -0.3], "radius": 1}
     floor = {"type": "rectangle", "to_world": T().rotate([1, 0, 0], -90).scale([4, 4, 1])}
@@ -109,7 +112,10 @@ def pair(folder, text, light, window, pixel, size, camera=APERTURE, metadata="",
     view = np.eye(4)
     view[:3, :3], view[:3, 3] = turned(-25, 10), (1, 4, 8)
     made = sensor(view, window, pixel, focal)
+    if lens:
+        made |= {"type": "thinlens", "aperture_radius": lens[0], "focus_distance": lens[1]}
     pixels = made["film"]["crop_width"] * made["film"]["crop_height"]
     share = pixels // (size[0] * size[1])
-    image, variance = shoot(parts, made, spp=max(spp // share, 4))
+    integrator = {"type": "path", "max_depth": 2 + bounces, "rr_depth": 1000} if bounces else None
+    image, variance = shoot(parts, made, max(spp // share, 4), integrator)
     return ours, binned(image, *size), binned(variance, *size) / share

@@ -72,3 +72,15 @@ def test_orthographic(tmp_path):
     """ + OFFSETS.format(6, 3)
     text = SUN.replace("POLICY", "expandAperture")
     same(*pair(tmp_path, text, LIGHT, (-5.4, 6.6, -2.7, 3.3), 0.06, (40, 20), camera, METADATA, None))
+
+
+def test_depth_of_field(tmp_path):
+    """fStop 4 at 3.5 units of focal length: a lens of radius 3.5 / 4 / 2, sharp at the plane 5 units away."""
+    camera = APERTURE + "float fStop = 4\n float focusDistance = 5"
+    window, lens = (-10, 10, -7.5, 7.5), (3.5 / 4 / 2, 5.0)
+    text = SUN.replace("POLICY", "expandAperture")
+    ours, theirs, variance = pair(tmp_path, text, LIGHT, window, 0.25, (40, 30), camera, METADATA, lens=lens, spp=2048)
+    sharp, _, _ = pair(tmp_path, text, LIGHT, window, 0.25, (40, 30), metadata=METADATA, spp=64)
+    assert np.abs(luminance(sharp["color"]) - luminance(theirs)).max() > 0.2 * theirs.max()
+    assert np.abs(luminance(ours["color"]) - luminance(theirs)).max() < 0.03 * luminance(theirs).max()
+    assert abs(ours["color"].mean() / theirs.mean() - 1) < 2e-3

@@ -124,3 +124,25 @@ def test_dielectric_scratches_on_glass_are_seen():
     assert inside.sum() > 300
     assert film["scratches"][inside].mean() > 0.03 and film["base"][inside].mean() > 0.03
     assert abs(film["color"][inside].mean() - 1.0) < 0.04
+
+
+def test_light_between_bodies_vanishes():
+    """Paths between white scratched bodies bring back all light; only those of more than 64 surfaces are cut off."""
+    mirrors = layers(scenes.white_metal(), "round")[:12]
+    paper = scenes.scratched(scenes.lambert(), coverage=0.4)
+    ball = scenes.sphere(radius=0.8)
+    meshes = [scenes.slotted(ball, 12), ball, scenes.plane(6.0, axis="y")]
+    places = [(-0.9, 0, -6), (0.9, 0.2, -5.5), (0, -1, -6)]
+    owned = [tuple(range(12)), (12,), (12,)]
+    placed = [
+        Instance(path=f"/{n}", mesh=n, transform=scenes.place(at=where).transform, materials=slots)
+        for n, (where, slots) in enumerate(zip(places, owned, strict=True))
+    ]
+    world = scenes.scene(meshes, [*mirrors, paper], [scenes.dome()], placed, scenes.camera(30.0))
+    film = scenes.shoot(world, spp=256, integrator="path", max_depth=64)
+    assert film.stats["invalid_samples"] == 0 and film["scratches"].mean() > 0.1
+    deviations, _ = excess(film)
+    assert deviations.max() < 6.0
+    noise = np.sqrt(film["variance"].sum()) / film["variance"].size
+    assert noise < 2e-3 and abs(film["color"].mean() - 1.0) < 1e-3 + 4 * noise
+    assert abs(scenes.shoot(world, spp=16)["color"].mean() - 1.0) > 0.05

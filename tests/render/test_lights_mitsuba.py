@@ -190,3 +190,14 @@ def test_lights(tmp_path, case):
         off, _ = agreement(ours, theirs, variance, region)
         assert region.sum() > 80 and off < 5e-3
     assert deviations(ours, theirs, variance)[plain].max() < 4.0
+
+
+@pytest.mark.parametrize("case", [rect, dome_even], ids=lambda c: c.__name__)
+def test_light_between_ball_and_floor(tmp_path, case):
+    text, light = case(tmp_path)
+    ours, theirs, variance = pair(tmp_path, text, light, (-10, 10, -7.5, 7.5), 0.25, (40, 30), spp=512, bounces=3)
+    for prim in (0, 1):
+        region = (ours["primId"] == prim) & (ours["alpha"] == 1.0)
+        off, _ = agreement(ours, theirs, variance, region)
+        assert region.sum() > 80 and off < 5e-3
+    assert deviations(ours, theirs, variance).max() < 4.0
