@@ -151,7 +151,10 @@ def plan_layers(
         own: list[LayerPlan] = []
         for layer in material.layers if number in used else ():
             subs = [s for s in sublayers(layer) if allowed(s.distribution)]
-            fresnel, keeps = reflector(scene, material, layer)
+            try:
+                fresnel, keeps = reflector(scene, material, layer)
+            except ValueError as error:
+                raise ValueError(f"{layer.label}: {error}") from None
             warnings |= dict.fromkeys(_complaints(material, layer, fresnel))
             if fresnel is None:
                 color = layer.diffuse_color

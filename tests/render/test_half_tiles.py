@@ -12,7 +12,8 @@ from . import scenes as S
 def test_half_done_tiles_in_a_checkpoint_start_again(tmp_path):
     """What other threads had added to their tiles, or one tile had when it was interrupted, does not count twice."""
     world = S.scene([S.sphere(8, 16)], [S.scratched()], [S.dome()])
-    plan = sw.make_plan(world, sw.Settings(width=48, height=32, spp=2, tile=16, threads=1, effects=S.EVERYTHING))
+    settings = {"width": 48, "height": 32, "spp": 2, "tile": 16, "threads": 1, "filter": "box"}
+    plan = sw.make_plan(world, sw.Settings(effects=S.EVERYTHING, **settings))
     file = tmp_path / "part"
 
     def stop(done, total, what):

@@ -1,4 +1,4 @@
-"""Normal maps turn the shading normal by x along dP/du, y along dP/dv and z to the outside, however uvs are mirrored."""
+"""Normal maps turn the shading normal: x along dP/du, y along dP/dv, z to the outside, however uvs are mirrored."""
 
 from dataclasses import replace
 
