@@ -19,7 +19,10 @@ DOORS = {
     "vtk": {"viewers": "pyvista's own library"},
     "trame": {"viewers": "shows pyvista in a browser"},
     "matplotlib": {"viewers": "plots of profiles and tables", "study": "plots of error against time"},
-    "scipy": {"study": "only the extra installs it"},
+    "scipy": {
+        "study": "only the extra installs it",
+        "reflectance": "refines fitted models; where the extra is missing, the direct fit remains",
+    },
     "skimage": {"study": "only the extra installs it"},
     "flip_evaluator": {"study": "only the extra installs it"},
     "mitsuba": {},

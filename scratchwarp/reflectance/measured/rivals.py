@@ -1,6 +1,5 @@
 """Analytical models fitted to a measurement, for comparison with a stencil model of the same data."""
 
-import importlib
 from dataclasses import dataclass
 from typing import Any
 
@@ -50,8 +49,9 @@ class Rival:
 def fit_rival(brdf: Any, model: str = "kurt", lobes: int | None = None) -> Rival:
     """Least squares of an analytical model to a ``Brdf`` or values [288, 288, 3]; needs scipy (extra ``study``).
 
-    ``model``: "kurt" (two lobes unless told), "ward", "ashikhmin-shirley" or "ggx" (one). Each lobe starts along the
-    brightest ridges of the data and across them. Raises ValueError naming the argument.
+    ``model``: "kurt" (two lobes unless told), "ward", "ashikhmin-shirley" or "ggx" (one). Lobes are fitted to
+    luminance, kd and ks to each channel, as Filip et al. 2015 fit Kurt's; lobes start along the brightest ridges of the
+    data and across them. Raises ValueError naming the argument.
     """
     if model not in SHAPES:
         raise ValueError(f"model must be one of {', '.join(RIVALS)}, got {model!r}")
@@ -71,7 +71,9 @@ def fit_rival(brdf: Any, model: str = "kurt", lobes: int | None = None) -> Rival
     axes = (peaks(*ridge_curve(seen @ _LUMINANCE, pairs())) or [0.0])[:2]
     best, error = None, np.inf
     for turn in (0.0, 0.5 * np.pi):
-        done = _searched(model, [axes[k % len(axes)] + turn for k in range(count)], at, seen[kept], root)
+        done = _searched(
+            model, [axes[k % len(axes)] + turn for k in range(count)], at, seen[kept] @ _LUMINANCE[:, None], root
+        )
         if done.cost < error:
             best, error = done.x, done.cost
     assert best is not None
@@ -103,14 +105,14 @@ def _design(model: str, shapes: np.ndarray, at: Angles) -> np.ndarray:
 
 
 def _linear(design: np.ndarray, seen: np.ndarray, root: np.ndarray) -> np.ndarray:
-    """Non-negative least squares for kd and ks, [1 + lobes, 3]."""
+    """Non-negative least squares for kd and ks, [1 + lobes, channels]."""
     nnls = _scipy().nnls
     scale = np.maximum(np.linalg.norm(design * root[:, None], axis=0), 1e-150)
     scaled = design * (root[:, None] / scale)
-    # of the normal equations' square root: as many rows as unknowns
-    q, r = np.linalg.qr(scaled)
-    right = q.T @ (seen * root[:, None])
-    return np.stack([nnls(r, right[:, c])[0] for c in range(3)], axis=-1) / scale[:, None]
+    # of the square root of the normal equations: as many rows as unknowns
+    upper = np.linalg.cholesky(scaled.T @ scaled + 1e-12 * np.eye(design.shape[1])).T
+    right = np.linalg.solve(upper.T, scaled.T @ (seen * root[:, None]))
+    return np.stack([nnls(upper, right[:, c])[0] for c in range(seen.shape[1])], axis=-1) / scale[:, None]
 
 
 def _searched(model: str, azimuths: list[float], at: Angles, seen: np.ndarray, root: np.ndarray) -> Any:
@@ -129,6 +131,7 @@ def _searched(model: str, azimuths: list[float], at: Angles, seen: np.ndarray, r
 
 def _scipy() -> Any:
     try:
-        return importlib.import_module("scipy.optimize")
+        from scipy import optimize
     except ImportError:
         raise ImportError("fitting a rival model needs scipy: pip install 'scratchwarp[study]'") from None
+    return optimize

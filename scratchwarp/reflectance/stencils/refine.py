@@ -4,7 +4,6 @@ The residuals of 14,000 pairs and three channels reach scipy folded to as many a
 every point J^T J = R^T R and R^T q = J^T r give the same cost, gradient and Gauss-Newton step as J and r.
 """
 
-import importlib
 from typing import Any
 
 import numpy as np
@@ -15,11 +14,12 @@ from .forward import COLOR, LOG_ALPHA, MODE, WIDTH, B, Q, count, model_and_slope
 
 def _least_squares() -> Any:
     try:
-        return importlib.import_module("scipy.optimize").least_squares
+        from scipy.optimize import least_squares
     except ImportError:
         raise ImportError(
             "refining a fit needs scipy: pip install 'scratchwarp[study]', or fit with refine=False"
         ) from None
+    return least_squares
 
 
 def bounds(modes: int) -> tuple[np.ndarray, np.ndarray]:
