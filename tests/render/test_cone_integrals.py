@@ -121,8 +121,8 @@ def expected(table, hit):
     return found.sum() * np.pi / n * RADIANCE, (hit(w) * np.cos(phi)).sum() / np.cos(phi).sum()
 
 
-def shoot(light, shape, quad=None):
-    """(film of a fully scratched plane seen from (THETA, PHI), its table)."""
+def shoot(light, shape, quad=None, blocker=None):
+    """(film of a fully scratched plane seen from (THETA, PHI), its table). ``quad``: the mesh that shines."""
     omega = np.array([np.sin(THETA), np.cos(THETA) * np.sin(PHI), np.cos(THETA) * np.cos(PHI)])
     right = np.cross((0.0, 1, 0), omega) / np.linalg.norm(np.cross((0.0, 1, 0), omega))
     view = np.eye(4)
@@ -137,6 +137,9 @@ def shoot(light, shape, quad=None):
     if quad is not None:
         meshes.append(quad)
         placed.append(Instance("/quad", 1, np.eye(4), (1,), light=0))
+    if blocker is not None:
+        meshes.append(blocker)
+        placed.append(Instance("/blocker", len(meshes) - 1, np.eye(4), (1,)))
     world = scenes.scene(meshes, materials, [light], placed, cam)
     plan = sw.make_plan(world, sw.Settings(width=8, height=8, spp=1024, filter="box", effects=scenes.EVERYTHING))
     film = sw.render(world, plan)
@@ -144,23 +147,50 @@ def shoot(light, shape, quad=None):
     return film, plan.tables[0]
 
 
+def emitter(lamp, size):
+    """The mesh of a mesh light."""
+    if lamp != "mesh":
+        return None
+    corners = [CENTER + a * size * EX + b * 0.6 * size * EY for a, b in ((-1, -1), (-1, 1), (1, 1), (1, -1))]
+    return Mesh("/quad", corners, [[0, 1, 2], [0, 2, 3]])
+
+
+def agree(film, wanted):
+    found = film["color"].mean((0, 1), dtype=float)
+    noise = np.sqrt(film["variance"].sum()) / film["variance"].size / (found @ [0.2126, 0.7152, 0.0722] + 1e-9)
+    assert noise < 1e-2
+    np.testing.assert_allclose(found, wanted, rtol=1e-3 + 4 * noise, atol=1e-7)
+
+
 @pytest.mark.parametrize("size", [0.02, 0.3, 1.6])
 @pytest.mark.parametrize("shape", PROFILES)
 @pytest.mark.parametrize("lamp", LAMPS)
 def test_mirror_cone(lamp, shape, size):
     light, hit = LAMPS[lamp](size)
-    emitter = None
-    if lamp == "mesh":
-        corners = [CENTER + a * size * EX + b * 0.6 * size * EY for a, b in ((-1, -1), (-1, 1), (1, 1), (1, -1))]
-        emitter = Mesh("/quad", corners, [[0, 1, 2], [0, 2, 3]])
-    film, table = shoot(light, shape, emitter)
+    film, table = shoot(light, shape, emitter(lamp, size))
     wanted, share = expected(table, hit)
-    found = film["color"].mean((0, 1), dtype=float)
-    noise = np.sqrt(film["variance"].sum()) / film["variance"].size / (found @ [0.2126, 0.7152, 0.0722] + 1e-9)
-    assert 0.004 < share < 0.95 and noise < 1e-2
-    if shape == "round":
-        assert wanted.min() > 1e-3
-    np.testing.assert_allclose(found, wanted, rtol=1e-3 + 4 * noise, atol=1e-7)
+    assert 0.004 < share < 0.95
+    assert shape != "round" or wanted.min() > 1e-3
+    agree(film, wanted)
+
+
+@pytest.mark.parametrize("size", [0.2, 0.6])
+@pytest.mark.parametrize("lamp", LAMPS)
+def test_half_hidden(lamp, size):
+    """A sheet half-way to the lamp hides where its x is positive."""
+    light, hit = LAMPS[lamp](size)
+    sheet = [CENTER / 2 + a * EX + b * EY for a, b in ((0, -0.7), (4, -0.7), (4, 4), (0, 4))]
+
+    def open_hit(w):
+        x, y, ahead = on_plane(w)
+        return hit(w) & ~(ahead & (x > 0) & (y > -1.4))
+
+    for corners in ([[0, 1, 2], [0, 2, 3]], [[0, 2, 1], [0, 3, 2]]):
+        film, table = shoot(light, "round", emitter(lamp, size), Mesh("/sheet", sheet, corners))
+        wanted, _ = expected(table, open_hit)
+        whole, _ = expected(table, hit)
+        assert (wanted < 0.95 * whole).all() and wanted.min() > 0.01
+        agree(film, wanted)
 
 
 @pytest.mark.parametrize("shape", ["vGroove", "round"])
