@@ -15,6 +15,7 @@ import warp as wp
 import scratchwarp as sw
 from scratchwarp.kernels import kernel_key
 from scratchwarp.kernels.render_device import make_kernel
+from scratchwarp.pipelines.author_demo import author
 from scratchwarp.scene import Material, PreviewSurface, RectLight
 
 from . import scenes
@@ -88,12 +89,15 @@ def test_the_plain_kernel_holds_no_scratch_code():
     assert {"sample_rect", "sample_dome", "preview_surface"} <= without
 
 
-def test_explain_says_so():
-    plan = sw.make_plan(plain())
+@pytest.mark.parametrize("authored", [False, True])
+def test_explain_says_so(tmp_path, authored):
+    world = sw.read(author(tmp_path, 0.1, ["plain"])[0]) if authored else plain()
+    plan = sw.make_plan(world)
     lines = {line.split()[0]: line.split()[1] for line in plan.explain().splitlines() if line.strip()}
     scratch = [n for n in plan.effects if n.startswith("scratches")] + ["diffraction", "grooves"]
     assert len(scratch) >= 10 and all(lines[name] == "off" for name in scratch)
-    assert lines["lights.rect"] == lines["base.preview"] == "on"
+    assert lines["base.preview"] == "on" and "on" in (lines["lights.rect"], lines["lights.dome"])
+    assert plan.tables == ()
 
 
 def test_nothing_is_simulated_or_launched_in_vain():
