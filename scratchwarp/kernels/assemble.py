@@ -61,6 +61,7 @@ def kernel_key(scene: Scene, plan: EffectPlan) -> KernelKey:
         preview=on("base.preview"),
         measured=on("base.measured"),
         diffuse_scratches=bool(distributions) and on("scratches.diffuse"),
+        sum_coverage=bool(distributions) and on("scratches.sumCoverage"),
         light_links=on("lights.links"),
         light_multipliers=on("lights.multipliers"),
         mesh_lights="mesh" in kinds,

@@ -115,6 +115,8 @@ def make_gather(key: KernelKey):
                     xi = (xi - p) / wp.max(1.0 - p, 1.0e-7)
         share = float(0.0)
         if total > 0.0:
+            if wp.static(key.sum_coverage):
+                bare = 1.0 - wp.min(total, 1.0)  # Raymond 2016 Eq. 4
             share = (1.0 - bare) / total
         result.covered = 1.0 - bare
         result.kept = kept * share

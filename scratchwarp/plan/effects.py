@@ -77,6 +77,10 @@ def _diffuse_scratches(f: Facts) -> Answer:
     return _answer(found, "Lambert scratches", "no Lambert scratch")
 
 
+def _sum_coverage(f: Facts) -> Answer:
+    return False, "layers overlap at random, 1 - product (1 - alpha); on: the sum, at most 1 (Raymond 2016 Eq. 4)", ()
+
+
 def _diffraction(f: Facts) -> Answer:
     asked = [m.path for m in f.materials if m.wave is not None]
     if asked:
@@ -157,6 +161,7 @@ EFFECTS: dict[str, Callable[[Facts], Answer]] = {
     "scratches.interreflection": _interreflection,
     "scratches.fresnel": _fresnel,
     "scratches.diffuse": _diffuse_scratches,
+    "scratches.sumCoverage": _sum_coverage,
     "diffraction": _diffraction,
     "grooves": _grooves,
     "base.preview": lambda f: _surfaces(

@@ -20,12 +20,13 @@ from scratchwarp.scene import (
 )
 
 # Code for everything, so that the tests of this folder share a few kernels. ``test_effects`` shows that an effect which
-# nothing calls for changes no bit. Left out: what changes how lights are sampled, and what needs data of its own.
+# nothing calls for changes no bit. Left out: what changes how lights are sampled or
+# layers combined, and what needs data of its own.
 EVERYTHING = {
     name: True
     for name in EFFECTS
     if name.split(".")[0] in ("lights", "base", "scratches", "shadows", "lens", "indirect")
-    and name not in ("lights.multipliers", "scratches.curves")
+    and name not in ("lights.multipliers", "scratches.curves", "scratches.sumCoverage")
 }
 
 

@@ -63,3 +63,11 @@ def test_density_counts_scratches(space):
     world = scenes.scene([scenes.plane(2.0)], [material], [scenes.dome()], placed, scenes.camera(15.0))
     share = np.pi / 4 * 4 * 0.02 * 1.0
     assert scenes.shoot(world)["color"].mean() == pytest.approx(share, rel=0.05)
+
+
+@pytest.mark.parametrize(("coverage", "union", "added"), [(0.3, 0.51, 0.6), (0.7, 0.91, 1.0)])
+def test_coverages_add_up_where_the_paper_is_asked_for(coverage, union, added):
+    """Raymond 2016 Eq. 4: the sum of the layers' coverages, normalised above 1."""
+    assert covered("crosshatch", coverage, 50.0) == pytest.approx(union, abs=1.5e-3)
+    effects = {**scenes.EVERYTHING, "scratches.sumCoverage": True}
+    assert covered("crosshatch", coverage, 50.0, effects=effects) == pytest.approx(added, abs=1.5e-3)
