@@ -40,7 +40,7 @@ def ball(path: Path | str, detail: float = 1.0) -> Path:
     usd.layer(
         steel, "marks", usd.profile(steel, "sharp", shape="vGroove", rim=0.3), order=2, distribution="random",
         width=55.0, depth=14.0, length=9000.0, coverage=0.012, angleSpread=360.0, curvature=30.0, seed=8,
-        widthVariation=0.4, depthVariation=0.4,
+        widthVariation=0.4,
     )
     body = shapes.sphere(RADIUS, (0.0, 0.45, 1.0), rings, 2 * rings)
     usd.mesh(stage, "ball", body, steel, (0.0, RADIUS + 0.38, 0.0))

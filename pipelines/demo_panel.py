@@ -29,7 +29,7 @@ def panel(path: Path | str, detail: float = 1.0) -> Path:
     )
     usd.layer(
         paint, "twigs", shallow, order=2, distribution="random", width=90.0, depth=9.0, length=40000.0, coverage=0.012,
-        angle=8.0, angleSpread=30.0, curvature=10.0, widthVariation=0.5, depthVariation=0.5, seed=4,
+        angle=8.0, angleSpread=30.0, curvature=10.0, widthVariation=0.5, seed=4,
     )
     usd.layer(
         paint, "gravel", torn, order=3, distribution="random", width=260.0, depth=70.0, length=4000.0, coverage=0.004,

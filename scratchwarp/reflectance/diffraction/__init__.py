@@ -11,7 +11,7 @@ lights are cut, ``radiance_device`` all slices, ``ellipse_device``, ``color_devi
 Public names load on first use.
 """
 
-import importlib
+from ...lazy import lazily
 
 _PUBLIC = {
     "Scratch": "scratch",
@@ -28,14 +28,4 @@ _PUBLIC = {
 
 __all__ = sorted(_PUBLIC)
 
-
-def __getattr__(name: str):
-    if name not in _PUBLIC:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    value = getattr(importlib.import_module(f"{__name__}.{_PUBLIC[name]}"), name)
-    globals()[name] = value
-    return value
-
-
-def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+__getattr__, __dir__ = lazily(__name__, _PUBLIC)

@@ -5,7 +5,7 @@
 ``rival_shapes`` analytical models fitted to the same data as a stencil model.
 """
 
-import importlib
+from ...lazy import lazily
 
 _PUBLIC = {
     "Brdf": "brdf",
@@ -19,14 +19,4 @@ _PUBLIC = {
 
 __all__ = sorted(_PUBLIC)
 
-
-def __getattr__(name: str):
-    if name not in _PUBLIC:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    value = getattr(importlib.import_module(f"{__name__}.{_PUBLIC[name]}"), name)
-    globals()[name] = value
-    return value
-
-
-def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+__getattr__, __dir__ = lazily(__name__, _PUBLIC)

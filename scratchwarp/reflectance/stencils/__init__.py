@@ -6,7 +6,7 @@ Fitting: ``angles`` the grid of a measurement and its symmetries, ``axes`` the d
 of the paper, ``start``, ``forward`` and ``refine`` the least squares after it, ``fitting`` the way through all of them.
 """
 
-import importlib
+from ...lazy import lazily
 
 _PUBLIC = {
     "Mode": "model",
@@ -21,14 +21,4 @@ _PUBLIC = {
 
 __all__ = sorted(_PUBLIC)
 
-
-def __getattr__(name: str):
-    if name not in _PUBLIC:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    value = getattr(importlib.import_module(f"{__name__}.{_PUBLIC[name]}"), name)
-    globals()[name] = value
-    return value
-
-
-def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+__getattr__, __dir__ = lazily(__name__, _PUBLIC)
