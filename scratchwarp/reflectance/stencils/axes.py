@@ -10,7 +10,7 @@ import numpy as np
 
 from .angles import THETAS, Pairs
 from .direct import TYPICAL, direct, subset
-from .forward import MODE, band, model_and_slopes
+from .forward import MODE, band, model_values
 
 _STEP = np.radians(1.5)
 _SIGMA = 0.04  # of H . U across a ridge
@@ -72,17 +72,17 @@ def further_axes(axes: list[float], left: np.ndarray, where: Pairs) -> list[floa
     return found + apart(peaks(*ridge_curve(left, where)), [*axes, *found])[:1]
 
 
-def detect(where: Pairs, values: np.ndarray, modes: int | None, most: int = 3) -> list[np.ndarray]:
+def detect(where: Pairs, values: np.ndarray, boost: np.ndarray, modes: int | None, most: int = 3) -> list[np.ndarray]:
     """Azimuth, width, b and log alpha, [4] each, of the modes of ``values`` [n, 3], the dominant first.
 
-    ``modes`` of them, or as many as are worth it.
+    ``modes`` of them, or as many as are worth it where pairs weigh ``boost``.
     """
-    part, seen = subset(where, values, 700)
+    part, seen = subset(where, values, 700, boost)
     luminance = seen @ _LUMINANCE
     axes = (peaks(*ridge_curve(values @ _LUMINANCE, where)) or [0.0])[:1]
     error, numbers = direct(axes, part, seen)
     while len(axes) < (modes or most):
-        model = model_and_slopes(numbers, len(axes), part)[0]
+        model = model_values(numbers, len(axes), part)
         ridges = further_axes(axes, luminance - _LUMINANCE @ model, part)
         if not ridges and modes is None:
             break

@@ -19,26 +19,39 @@ _BS = (-0.02, 0.0, 0.01, 0.03)
 _ALPHAS = (3.0, 8.0, 14.0, 24.0, 45.0, 90.0)
 TYPICAL = (0.6, 0.005, np.log(14.0))  # width, b, log alpha
 _LEAST = np.array([-np.inf, 0.0, -0.05, 0.0])
+_GREATEST = 13.93  # 1 / (cos_i cos_o) - 1 at 75 degrees
+_GROWTH = 12.0  # most of the log of what a highlight may gain from the normal to there
 _MATTE = 0.95  # H_z above which the specular highlight may sit
 _EXPONENTS = (5.0, 10.0, 20.0, 35.0, 60.0, 120.0, 300.0)
 _STRENGTHS = (0.0, 0.7, 1.0, 1.3, 1.7, 2.2, 3.0, 6.0)
 _LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 
-def subset(where: Pairs, values: np.ndarray, size: int, seed: int = 0) -> tuple[Pairs, np.ndarray]:
-    """About ``size`` of the pairs, bright ones more often, weighted so that sums of squares keep their means."""
-    luminance = np.abs(values) @ _LUMINANCE
+def boosts(where: Pairs, values: np.ndarray) -> np.ndarray:
+    """[n] weights that make all pairs of elevations count alike in relative terms, the darkest a little less.
+
+    Highlights may be a thousand times brighter at 75 degrees than at 30: a plain sum of squares sees no other mode.
+    """
+    square = where.weight * (values @ _LUMINANCE) ** 2
+    group = np.bincount(where.elevations, square) / np.maximum(np.bincount(where.elevations, where.weight), 1e-30)
+    return 1.0 / np.maximum(group, 1e-10 * group.max())[where.elevations]
+
+
+def subset(
+    where: Pairs, values: np.ndarray, size: int, boost: np.ndarray | None = None, seed: int = 0
+) -> tuple[Pairs, np.ndarray]:
+    """About ``size`` of the pairs, bright ones more often, weighted so that sums of squares keep their means.
+
+    ``boost`` [n] multiplies the weights, and with it what is bright.
+    """
+    extra = np.ones_like(where.weight) if boost is None else boost
+    luminance = np.abs(values) @ _LUMINANCE * np.sqrt(extra)
     luminance = np.minimum(luminance, np.quantile(luminance, 0.999))  # a stray value must not take all the room
     importance = where.weight * (luminance.mean() + luminance + 1e-30)
     share = np.minimum(importance * (size / importance.sum()), 1.0)
     kept = np.random.default_rng(seed).random(len(share)) < share
-    part = Pairs(
-        where.half[kept],
-        where.inverse_cosines[kept],
-        where.weight[kept] / share[kept],
-        where.elevations[kept],
-        where.member[:0],
-    )
+    weight = (where.weight * extra / share)[kept]
+    part = Pairs(where.half[kept], where.inverse_cosines[kept], weight, where.elevations[kept], where.member[:0])
     return part, values[kept]
 
 
@@ -69,8 +82,9 @@ def direct(
     seen = values[matte]
     shapes = [*known, *(np.array([a, *TYPICAL]) for a in axes[len(known) :])]
     order = list(range(len(axes)))
+    coarse = [(w, b, np.log(a)) for w in _WIDTHS for b in _BS for a in _ALPHAS if a * np.log1p(_GREATEST * b) < _GROWTH]
     for k in order[len(known) :]:
-        grid = [np.array([axes[k], w, b, np.log(a)]) for w in _WIDTHS for b in _BS for a in _ALPHAS]
+        grid = [np.array([axes[k], *numbers]) for numbers in coarse]
         _walk(shapes, k, order, grid, part, seen)
     if len(axes) > 1:
         order = _best_order(shapes, part, seen)
@@ -138,6 +152,15 @@ def add_highlight(numbers: np.ndarray, matte: np.ndarray, where: Pairs, values: 
             if error < best:
                 best = error
                 numbers[-2], numbers[-1] = k, np.log(exponent)
+
+
+def level(modes: int, color: np.ndarray) -> np.ndarray:
+    """A model that is ``color`` everywhere, in the gauge of the fit."""
+    numbers = np.zeros(count(modes))
+    for k in range(modes):
+        numbers[MODE * k : MODE * (k + 1)] = [np.pi * k / modes, *TYPICAL, 1e6, *(1e-6 * color)]
+    numbers[-3], numbers[-1] = 1e6, np.log(30.0)
+    return numbers
 
 
 def background_share(color: np.ndarray, last: np.ndarray) -> float:

@@ -8,8 +8,8 @@ import numpy as np
 
 from .angles import SIZE, Pairs, collapse, pairs
 from .axes import detect, further_axes
-from .direct import TYPICAL, add_highlight, background_share, direct, reordered, subset
-from .forward import AZIMUTH, COLOR, MODE, Q, count, model_and_slopes, to_model
+from .direct import TYPICAL, add_highlight, background_share, boosts, direct, level, reordered, subset
+from .forward import AZIMUTH, COLOR, MODE, Q, count, model_values, to_model
 from .model import Mode, Model
 from .refine import refine as least_squares
 
@@ -17,7 +17,7 @@ _MOST_MODES = 3  # that are looked for when nobody says how many; more, where as
 _HIDDEN = 0.8  # a mode found late must bring the squared error below this share
 _USELESS = 1.2  # a mode whose loss raises the squared error by less goes
 _HIGHLIGHTS = ((0.0, np.log(30.0)), (1.3, np.log(30.0)))  # starts of k and the log of its exponent, besides the best
-_PERFECT = 1e-8  # mean squared error, for a maximum of 1, that nobody looks into (80 dB)
+_PERFECT = 1e-7  # share of the squares that nobody looks into
 _LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 
@@ -31,9 +31,10 @@ def fit(brdf: Any, modes: int | None = None, refine: bool = True, retro: bool = 
     """The stencil model of a BRDF, without initial guess.
 
     ``brdf``: a ``measured.Brdf`` or values [288, 288, 3] (illumination 48 it + ip, view 48 it + ip, linear rgb);
-    negative values count as 0. ``modes``: how many axes, None finds them. ``refine``: bounded least squares after the
-    direct fit, which needs scipy (extra ``study``). ``retro``: highlights return to the light. Raises ValueError naming
-    the argument, ImportError saying what to install.
+    negative values count as 0. ``modes``: how many axes; None finds up to three, each worth a fifth of the squared
+    error at least (a highlight of another shape than a stencil's may be given several). ``refine``: bounded least
+    squares after the direct fit, which needs scipy (extra ``study``). ``retro``: highlights return to the light. Raises
+    ValueError naming the argument, ImportError saying what to install.
     """
     values = np.asarray(brdf, np.float64)
     if values.shape != (SIZE, SIZE, 3):
@@ -49,11 +50,17 @@ def fit(brdf: Any, modes: int | None = None, refine: bool = True, retro: bool = 
     if top <= 0.0 or float(np.ptp(means, axis=0).max()) <= 1e-9 * top:
         return _constant(means.mean(axis=0), retro)
     means = means / top
-    shapes = detect(where, means, modes, _MOST_MODES)
+    boost = boosts(where, means)
+    shapes = detect(where, means, boost, modes, _MOST_MODES)
     part, seen = subset(where, means, 1500)
     numbers = _started([float(shape[0]) for shape in shapes], part, seen, shapes)
+    mean = np.average(means, axis=0, weights=where.weight)
+    if _squares(numbers, len(shapes), where, means) > float(np.sum(where.weight[:, None] * (means - mean) ** 2)):
+        numbers = level(len(shapes), mean)  # what fitted the part did not fit the whole: data without ridges
     if refine:
-        numbers = _refined(numbers, len(shapes), modes is None, where, means, _noise(values / top, where, means))
+        numbers = _refined(
+            numbers, len(shapes), modes is None, where, means, boost, _noise(values / top, where, means, boost)
+        )
     return to_model(_scaled(numbers, top), (len(numbers) - 2) // (MODE + 1), retro)
 
 
@@ -71,18 +78,23 @@ def _scaled(numbers: np.ndarray, scale: float) -> np.ndarray:
     return result
 
 
-def _noise(values: np.ndarray, where: Pairs, means: np.ndarray) -> float:
+def _noise(values: np.ndarray, where: Pairs, means: np.ndarray, boost: np.ndarray) -> float:
     """Squared error that no symmetric model can undercut by more than chance: scatter inside the pairs."""
     squares = np.bincount(where.member, np.sum(values**2, axis=-1).ravel(), len(where.weight))
     within = np.maximum(squares - where.weight * np.sum(means**2, axis=1), 0.0)
     several = where.weight > 1.0
-    scatter = float(np.sum(within[several] / (where.weight[several] - 1.0)))
-    return max(scatter, _PERFECT * 3.0 * float(where.weight.sum()))
+    scatter = float(np.sum((boost * within)[several] / (where.weight[several] - 1.0)))
+    return max(scatter, _PERFECT * float(np.sum(where.weight * boost * np.sum(means**2, axis=1))))
+
+
+def _squares(numbers: np.ndarray, modes: int, where: Pairs, means: np.ndarray) -> float:
+    """Squared error over all pairs."""
+    return float(np.sum((model_values(numbers, modes, where) - means.T) ** 2 * where.weight))
 
 
 def _started(axes: list[float], part: Pairs, seen: np.ndarray, known: Sequence[np.ndarray] = ()) -> np.ndarray:
     _, numbers = direct(axes, part, seen, known)
-    add_highlight(numbers, model_and_slopes(numbers, len(axes), part)[0], part, seen)
+    add_highlight(numbers, model_values(numbers, len(axes), part), part, seen)
     return numbers
 
 
@@ -138,7 +150,7 @@ def _without(numbers: np.ndarray, modes: int, k: int) -> np.ndarray:
 
 def _searched(best: _Fit, part: Pairs, seen: np.ndarray) -> _Fit | None:
     """The best fit with one more mode, at one of the ridges that are left."""
-    left = (seen.T - model_and_slopes(best.numbers, best.modes, part)[0]).T @ _LUMINANCE
+    left = (seen.T - model_values(best.numbers, best.modes, part)).T @ _LUMINANCE
     axes = [float(best.numbers[MODE * k + AZIMUTH]) for k in range(best.modes)]
     starts = []
     for found in further_axes(axes, left, part):
@@ -153,7 +165,7 @@ def _shaken(best: _Fit, part: Pairs, seen: np.ndarray) -> _Fit:
         rest = _Fit(
             best.modes - 1, *least_squares(_without(best.numbers, best.modes, k), best.modes - 1, part, seen, 8)
         )
-        left = (seen.T - model_and_slopes(rest.numbers, rest.modes, part)[0]).T @ _LUMINANCE
+        left = (seen.T - model_values(rest.numbers, rest.modes, part)).T @ _LUMINANCE
         axes = [float(rest.numbers[MODE * j + AZIMUTH]) for j in range(rest.modes)]
         own = float(best.numbers[MODE * k + AZIMUTH])
         for azimuth in [own, *further_axes([*axes, own], left, part)[:1]]:
@@ -161,8 +173,17 @@ def _shaken(best: _Fit, part: Pairs, seen: np.ndarray) -> _Fit:
     return min(best, _settled(starts, best.modes, part, seen), key=lambda one: one.error)
 
 
-def _refined(numbers: np.ndarray, modes: int, free: bool, where: Pairs, means: np.ndarray, noise: float) -> np.ndarray:
-    part, seen = subset(where, means, 1500)
+def _refined(
+    numbers: np.ndarray,
+    modes: int,
+    free: bool,
+    where: Pairs,
+    means: np.ndarray,
+    boost: np.ndarray,
+    noise: float,
+) -> np.ndarray:
+    """Modes are settled where all elevations count alike, their numbers in the end by the plain sum of squares."""
+    part, seen = subset(where, means, 1500, boost)
     best = _settled([reordered(numbers, order) for order in _orders(modes)], modes, part, seen)
     while free and best.modes < _MOST_MODES and best.error > 1.5 * noise:
         trial = _searched(best, part, seen)

@@ -82,6 +82,19 @@ def coefficients(masks: list[np.ndarray], betas: np.ndarray) -> tuple[np.ndarray
     return clear, shares
 
 
+def model_values(numbers: np.ndarray, modes: int, where: Pairs) -> np.ndarray:
+    """B_S [3, n] alone, by the sum of Eq. 9."""
+    bands = [band(numbers[MODE * k :], where, derivatives=False) for k in range(modes)]
+    clear, shares = coefficients([b.mask for b in bands], numbers[MODE * modes : MODE * modes + modes - 1])
+    colors = [numbers[MODE * k + COLOR : MODE * k + COLOR + 3, None] for k in range(modes)]
+    matte = numbers[-3] * colors[-1] * clear
+    for k, (share, color, b) in enumerate(zip(shares, colors, bands, strict=True)):
+        matte = matte + color * (share * np.maximum(numbers[MODE * k + Q] + b.power, 0.0))
+    gain = 1.0 + numbers[B] * (where.inverse_cosines - 1.0)
+    lobe = np.exp(np.exp(numbers[-1]) * np.log(np.maximum(where.half[:, 2], 1e-12)))
+    return matte * np.maximum(numbers[-2] * lobe * gain, 1.0)
+
+
 def model_and_slopes(numbers: np.ndarray, modes: int, where: Pairs) -> tuple[np.ndarray, np.ndarray]:
     """B_S [3, n] and its derivatives [numbers, 3, n]."""
     n = len(where.weight)

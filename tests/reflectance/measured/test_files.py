@@ -121,8 +121,10 @@ def test_the_fit_takes_a_measurement(tmp_path):
     w = grid()
     measured.save_utia(tmp_path / "a.bin", smooth(w[:, None], w[None], 0.7, 0.08))
     brdf = measured.load(tmp_path / "a.bin")
-    model = stencils.fit(brdf)
-    assert measured.compare(brdf, stencils.unfolded(model))["psnr"] > 30.0
+    model = stencils.fit(brdf, modes=1)
+    # a Gaussian that fades along its ridge is no stencil: one mode reaches 27 dB, further ones mend its shape
+    assert measured.compare(brdf, stencils.unfolded(model))["psnr"] > 25.0
+    assert measured.compare(brdf, stencils.unfolded(stencils.fit(brdf)))["psnr"] > 30.0
     # the lobe is wide in x, so that the scratches run along y
     assert abs(np.degrees(model.modes[0].azimuth) - 90.0) < 1.0
 

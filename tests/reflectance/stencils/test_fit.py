@@ -126,6 +126,7 @@ def test_slopes_are_those_of_differences():
     x[24:26], x[-3:] = (0.2, 0.1), (0.2, 1.3, 3.0)
     values, slopes = forward.model_and_slopes(x, modes, where)
     mean = collapse(stencils.unfolded(forward.to_model(x, modes)), where).T
+    np.testing.assert_allclose(forward.model_values(x, modes, where), values, rtol=1e-12)
     np.testing.assert_allclose(values, mean, rtol=1e-4, atol=1e-6 * mean.max())  # the kernel is float32
     for k in range(len(x)):
         step = np.zeros(len(x))
