@@ -13,7 +13,7 @@ from .rival_shapes import SHAPES, Angles, angles
 
 RIVALS = tuple(SHAPES)
 LOBES = {"kurt": 2, "ward": 1, "ashikhmin-shirley": 1, "ggx": 1}
-_SAMPLES = 2500
+_SAMPLES = 1500
 _LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 
