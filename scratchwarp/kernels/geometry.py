@@ -106,6 +106,7 @@ def _instance_arrays(
         uv[bad] = _fallback_uv(mesh.points, mesh.triangles[bad], scale)[:, order]
         dpdu[bad], dpdv[bad] = _gradients(world[bad], uv[bad])
 
+    assert mesh.slots is not None  # a Mesh fills them in
     area = 0.5 * norm
     total = max(float(area.sum()), 1e-300)
     mean = [1e6 * np.sqrt(float((area * (d * d).sum(1)).sum()) / total) for d in (dpdu, dpdv)]
@@ -115,7 +116,7 @@ def _instance_arrays(
         "uv": uv,
         "dpdu": dpdu,
         "dpdv": dpdv,
-        "material": np.array(instance.materials, np.int32)[mesh.slots],  # type: ignore[index]
+        "material": np.array(instance.materials, np.int32)[mesh.slots],
         "scale": np.array(mean),
     }
     if directed:

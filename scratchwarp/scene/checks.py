@@ -22,6 +22,11 @@ def freeze(
     return array
 
 
+def constant(values: Any) -> Any:
+    """Default of an array field: a tuple, which ``freeze`` turns into the array when the record is made."""
+    return values
+
+
 def in_range(owner: str, name: str, value: float, low: float = -np.inf, high: float = np.inf) -> None:
     """ValueError unless ``low <= value <= high`` (a NaN never is)."""
     if not low <= value <= high:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .checks import freeze, in_range, put
+from .checks import constant, freeze, in_range, put
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ class SphereLight(Light):
 
     center: np.ndarray
     radius: float
-    axis: np.ndarray = (0.0, 0.0, -1.0)  # type: ignore[assignment]
+    axis: np.ndarray = constant((0.0, 0.0, -1.0))
     point: bool = False
 
     def _arrays(self) -> dict[str, tuple[int, ...]]:
@@ -115,7 +115,7 @@ class CylinderLight(Light):
     center: np.ndarray
     axis: np.ndarray
     radius: float
-    forward: np.ndarray = (0.0, 0.0, -1.0)  # type: ignore[assignment]
+    forward: np.ndarray = constant((0.0, 0.0, -1.0))
 
     def _arrays(self) -> dict[str, tuple[int, ...]]:
         in_range(self.path, "radius", self.radius, 0.0)
@@ -128,7 +128,7 @@ class DomeLight(Light):
     OpenEXR latlong centre (longitude 0) is +Z. ``texture``: index into ``Scene.textures`` or -1.
     ``camera_visible``: whether camera rays see it."""
 
-    rotation: np.ndarray = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))  # type: ignore[assignment]
+    rotation: np.ndarray = constant(((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)))
     texture: int = -1
     camera_visible: bool = True
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .checks import freeze, one_of, put
+from .checks import constant, freeze, one_of, put
 
 WRAPS = ("black", "clamp", "repeat", "mirror")
 CHANNELS = ("rgb", "r", "g", "b", "a")
@@ -38,11 +38,11 @@ class TextureInput:
 
     texture: int
     channel: str = "rgb"
-    scale: np.ndarray = (1.0, 1.0, 1.0, 1.0)  # type: ignore[assignment]
-    bias: np.ndarray = (0.0, 0.0, 0.0, 0.0)  # type: ignore[assignment]
+    scale: np.ndarray = constant((1.0, 1.0, 1.0, 1.0))
+    bias: np.ndarray = constant((0.0, 0.0, 0.0, 0.0))
     wrap_s: str = "repeat"
     wrap_t: str = "repeat"
-    transform: np.ndarray = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0))  # type: ignore[assignment]
+    transform: np.ndarray = constant(((1.0, 0.0, 0.0), (0.0, 1.0, 0.0)))
     uv_set: str = "st"
 
     def __post_init__(self) -> None:

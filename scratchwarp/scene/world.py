@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .camera import Camera
-from .checks import freeze, put
+from .checks import constant, freeze, put
 from .geometry import Instance, Mesh
 from .layer import Curves
 from .light import Light, MeshLight
@@ -38,8 +38,8 @@ class Scene:
     textures: tuple[Texture, ...] = ()
     curves: tuple[Curves, ...] = ()
     time: float | None = None
-    origin: np.ndarray = (0.0, 0.0, 0.0)  # type: ignore[assignment]
-    up: np.ndarray = (0.0, 1.0, 0.0)  # type: ignore[assignment]
+    origin: np.ndarray = constant((0.0, 0.0, 0.0))
+    up: np.ndarray = constant((0.0, 1.0, 0.0))
     options: RenderOptions = RenderOptions()
     warnings: tuple[str, ...] = ()
     seconds: float = 0.0
