@@ -3,6 +3,7 @@
 Files (host):
     key             KernelKey: what a kernel is specialised by
     assemble        scene, plan and tables -> key and arguments
+    parts           what was built earlier and need not be built again
     stamp           a number that changes with the device code
     geometry        instances -> world triangles and their hierarchy
     material        materials and layers -> device records
@@ -19,5 +20,6 @@ Files (device):
 
 from .assemble import Assembled, assemble, kernel_key
 from .key import KernelKey
+from .parts import Parts
 
-__all__ = ["Assembled", "KernelKey", "assemble", "kernel_key"]
+__all__ = ["Assembled", "KernelKey", "Parts", "assemble", "kernel_key"]

@@ -11,11 +11,14 @@ from .. import lights
 from ..lights.light_device import Light
 from ..plan import EffectPlan
 from ..reflectance import profile_table
+from ..reflectance.texture import pack_textures
 from ..scene import MeshLight, Scene
+from ..scene.digest import digest
 from ..scratches import KINDS, curves
 from . import geometry, material
 from .camera_device import CameraData
 from .key import KernelKey
+from .parts import Parts
 from .world_device import LightSet, ScratchSet
 
 
@@ -88,10 +91,22 @@ def camera_data(scene: Scene, plan: EffectPlan) -> CameraData:
     return c
 
 
-def assemble(scene: Scene, plan: EffectPlan, tables: Sequence[Any], device: str = "cpu") -> Assembled:
-    """Build the device data that the plan's effects need, and nothing else."""
+def assemble(
+    scene: Scene, plan: EffectPlan, tables: Sequence[Any], device: str = "cpu", parts: Parts | None = None
+) -> Assembled:
+    """Build the device data that the plan's effects need, and nothing else.
+
+    ``parts``: what was built for an earlier scene or plan on this device; what is the same is taken from there.
+    """
+    parts = parts or Parts()
     key = kernel_key(scene, plan)
-    packed = lights.pack(scene, device)
+    with_mesh_lights = any(isinstance(r, MeshLight) for r in scene.lights)
+    placed = tuple((i.mesh, i.transform.tobytes(), i.materials, i.light) for i in scene.instances)
+    packed = parts.part(
+        "lights",
+        (digest(scene.lights), scene.textures, (placed, scene.meshes) if with_mesh_lights else ()),
+        lambda: lights.pack(scene, device),
+    )
     kinds = [k for k in packed.kinds if k in key.lights]
     order = {name: i for i, name in enumerate(key.lights)}
     row_type: Any = Light
@@ -109,21 +124,41 @@ def assemble(scene: Scene, plan: EffectPlan, tables: Sequence[Any], device: str 
             links[number] = [i in record.linked for i in range(links.shape[1])]
 
     emitters = {r.instance: int(flat[n]) for n, r in enumerate(scene.lights) if isinstance(r, MeshLight)}
-    shape = geometry.pack(scene, key.directed, key.display_colors, emitters, device)
-    strokes, sets = curves.pack(scene.curves if "curves" in key.distributions else (), device)
-    layers = None
-    if key.distributions:
-        layers = [
-            [material.pack_layer(p, sets[p.sublayer.curves] if p.sublayer.curves >= 0 else None) for p in own]
-            for own in plan.layers
-        ]
-    stuff = material.pack(scene, layers or [[] for _ in scene.materials], device)
+    shape = parts.part(
+        "geometry",
+        (
+            scene.meshes,
+            placed,
+            tuple(geometry.uv_set(m) for m in scene.materials),
+            key.directed,
+            key.display_colors,
+            tuple(sorted(emitters.items())),
+        ),
+        lambda: geometry.pack(scene, key.directed, key.display_colors, emitters, device),
+    )
+    explicit = scene.curves if "curves" in key.distributions else ()
+    strokes, sets = parts.part("curves", (explicit,), lambda: curves.pack(explicit, device))
+    atlas = parts.part(
+        "textures", (scene.textures,), lambda: pack_textures([t.pixels for t in scene.textures], device=device)
+    )
+
+    def layers() -> material.PackedMaterials:
+        packed_layers = None
+        if key.distributions:
+            packed_layers = [
+                [material.pack_layer(p, sets[p.sublayer.curves] if p.sublayer.curves >= 0 else None) for p in own]
+                for own in plan.layers
+            ]
+        return material.pack(scene, packed_layers or [[] for _ in scene.materials], atlas, device)
+
+    described = digest(scene.materials, plan.layers, key)
+    stuff = parts.part("layers", (described, scene.textures, explicit), layers)
     light_set, scratch_set = LightSet(), ScratchSet()
     light_set.lights = wp.array(table, dtype=Light, device=device)
     light_set.starts = wp.array(starts, dtype=int, device=device)
     light_set.links = wp.array(links, dtype=wp.uint8, device=device)
     light_set.arrays = packed.arrays
     scratch_set.layers, scratch_set.segments = stuff.layers, strokes
-    scratch_set.tables = profile_table.pack(tables, device)
+    scratch_set.tables = parts.part("tables", tuple(tables), lambda: profile_table.pack(tables, device))
     inputs = (camera_data(scene, plan), shape.arrays, stuff.arrays, scratch_set, light_set)
     return Assembled(key, inputs, (shape, stuff, packed, sets), packed.warnings)

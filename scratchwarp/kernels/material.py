@@ -8,7 +8,6 @@ import warp as wp
 
 from ..plan.choice import LayerPlan
 from ..plan.layers import conductor_index
-from ..reflectance import texture
 from ..scene import PreviewSurface, Scene, ScratchSurface, TextureInput
 from ..scene.texture import CHANNELS, WRAPS
 from ..scratches import kind_number
@@ -100,8 +99,11 @@ def pack_layer(plan: LayerPlan, curves: Any = None) -> LayerData:
     return d
 
 
-def pack(scene: Scene, layers: list[list[LayerData]], device: str = "cpu") -> PackedMaterials:
-    """Device materials; ``layers[i]`` are the packed sublayers of material i, the ones that cut deepest last."""
+def pack(scene: Scene, layers: list[list[LayerData]], atlas: Any, device: str = "cpu") -> PackedMaterials:
+    """Device materials; ``layers[i]`` are the packed sublayers of material i, the ones that cut deepest last.
+
+    ``atlas``: the scene's textures as ``reflectance.texture.pack_textures`` puts them on the device.
+    """
     reads: list[TextureRead] = []
     records: list[MaterialData] = []
     flat: list[LayerData] = []
@@ -118,6 +120,6 @@ def pack(scene: Scene, layers: list[list[LayerData]], device: str = "cpu") -> Pa
     arrays = MaterialArrays()
     arrays.materials = wp.array(records or [MaterialData()], dtype=MaterialData, device=device)
     arrays.reads = wp.array(reads or [TextureRead()], dtype=TextureRead, device=device)
-    arrays.atlas = texture.pack_textures([t.pixels for t in scene.textures], device=device)
+    arrays.atlas = atlas
     packed_layers: Any = wp.array(flat or [LayerData()], dtype=LayerData, device=device)
     return PackedMaterials(arrays, packed_layers)

@@ -93,8 +93,9 @@ def _sized(scene: Scene, layer: Layer, curves: int) -> Layer:
 class _Tables:
     """Tables asked for so far, each once: layers of one profile, aspect and reflectance share one."""
 
-    def __init__(self, scene: Scene, max_error: float | None) -> None:
+    def __init__(self, scene: Scene, max_error: float | None, known: tuple[TablePlan, ...]) -> None:
         self._scene, self._max_error = scene, max_error
+        self._chosen = {t.key: (t.theta_model, t.error) for t in known}
         self._plans: dict[tuple[Any, ...], TablePlan] = {}
 
     def index(self, layer: Layer, curves: int, fresnel: Any) -> int:
@@ -107,7 +108,7 @@ class _Tables:
         if known is None:
             profile = cross_section(p, sized)
             reflecting = None if isinstance(fresnel, optics.Mirror) else fresnel
-            model, off = theta_model(profile, reflecting, self._max_error)
+            model, off = self._chosen.get(key) or theta_model(profile, reflecting, self._max_error)
             flat = p.rim == 0.0 and (p.shape == "flat" or aspect == 0.0)
             known = TablePlan(key, profile, reflecting, 1 if flat else 2000, (), theta_model=model, error=off)
         if layer.label not in known.users:
@@ -137,13 +138,14 @@ def _complaints(material: Material, layer: Layer, fresnel: Any) -> list[str]:
 
 
 def plan_layers(
-    scene: Scene, allowed: Callable[[str], bool], max_error: float | None = None
+    scene: Scene, allowed: Callable[[str], bool], max_error: float | None = None, known: tuple[TablePlan, ...] = ()
 ) -> tuple[tuple[tuple[LayerPlan, ...], ...], tuple[TablePlan, ...], tuple[str, ...]]:
     """(sublayers of each material, tables to simulate, warnings).
 
-    ``allowed(distribution)``: whether it may be on; ``max_error``: of a table's albedos, None for the default.
+    ``allowed(distribution)``: whether it may be on; ``max_error``: of a table's albedos, None for the default;
+    ``known``: tables planned earlier for the same ``max_error``.
     """
-    tables = _Tables(scene, max_error)
+    tables = _Tables(scene, max_error, known)
     warnings: dict[str, None] = {}
     every: list[tuple[LayerPlan, ...]] = []
     used = {m for i in scene.instances for m in i.materials}

@@ -15,9 +15,10 @@ _MISSING = ("diffraction", "grooves")  # authored and planned, but not rendered 
 Layers = tuple[tuple[LayerPlan, ...], ...]
 
 
-def make_plan(scene: Scene, settings: Settings | None = None) -> EffectPlan:
+def make_plan(scene: Scene, settings: Settings | None = None, earlier: EffectPlan | None = None) -> EffectPlan:
     """Decide each effect on or off with a reason that names the prim, and every setting.
 
+    ``earlier``: a plan of this scene as it was; tables that it chose a theta model for are not looked at again.
     Raises ValueError on an unknown effect name, or a layer whose profile cannot be simulated.
     """
     start = time.perf_counter()
@@ -31,7 +32,8 @@ def make_plan(scene: Scene, settings: Settings | None = None) -> EffectPlan:
         return forced.get("scratches", True) and forced.get(f"scratches.{distribution}", True)
 
     try:
-        layers, tables, warnings = plan_layers(scene, allowed, decided.max_error)
+        known = earlier.tables if earlier is not None and earlier.settings.max_error == decided.max_error else ()
+        layers, tables, warnings = plan_layers(scene, allowed, decided.max_error, known)
     except ValueError as error:
         raise ValueError(f"{scene.path}: {error}") from None
     used = sorted({m for instance in scene.instances for m in instance.materials})

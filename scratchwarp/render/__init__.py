@@ -3,6 +3,7 @@
 Files:
     renderer    render(scene, plan) -> Film
     tiles       tiles over threads
+    launch      one kernel over tiles of one film
     film        Film and its AOVs
     develop     sums -> AOVs and header
     checkpoint  finished tiles on disk

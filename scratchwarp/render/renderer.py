@@ -10,37 +10,32 @@ import numpy as np
 import warp as wp
 
 from .. import __version__, profiles
-from ..kernels import KernelKey, assemble
-from ..kernels.film_device import FilmArrays, Window
-from ..plan import EffectPlan
+from ..kernels import Assembled, assemble
+from ..plan import EffectPlan, TablePlan
 from ..scene import Scene
+from ..scene.digest import digest
 from . import checkpoint as checkpoints
 from . import develop
 from .film import Film
+from .launch import SAMPLES_A_LAUNCH, SUMS, film_arrays, launcher, loaded
 from .progress import Progress, silent
 from .tiles import Tile, run, tiles
 
-# Samples of one launch: long enough to hide its overhead, short enough to stop between launches.
-SAMPLES_A_LAUNCH = 32
 # Seconds between checkpoints.
 CHECKPOINT_EVERY = 10.0
-_SUMS = {
-    "color": wp.vec3,
-    "base": wp.vec3,
-    "scratches": wp.vec3,
-    "square": float,
-    "albedo": wp.vec3,
-    "normal": wp.vec3,
-    "position": wp.vec3,
-    "depth": float,
-    "alpha": float,
-    "hits": int,
-    "nearest": float,
-    "instance": int,
-    "rays": int,
-    "invalid": int,
-}
-_compiled: set[KernelKey] = set()
+
+
+def simulate_table(table: TablePlan, threads: int) -> profiles.Table:
+    """One of the plan's profile tables."""
+    return profiles.simulate(
+        table.profile,
+        resolution=table.resolution,
+        rays=table.rays,
+        fresnel=table.fresnel,
+        max_bounces=table.max_bounces,
+        theta_model=table.theta_model,
+        threads=threads,
+    )
 
 
 def simulate_tables(plan: EffectPlan, threads: int, progress: Progress = silent) -> list[profiles.Table]:
@@ -48,29 +43,10 @@ def simulate_tables(plan: EffectPlan, threads: int, progress: Progress = silent)
     made = []
     for number, table in enumerate(plan.tables):
         progress(number, len(plan.tables), "simulate")
-        made.append(
-            profiles.simulate(
-                table.profile,
-                resolution=table.resolution,
-                rays=table.rays,
-                fresnel=table.fresnel,
-                max_bounces=table.max_bounces,
-                theta_model=table.theta_model,
-                threads=threads,
-            )
-        )
+        made.append(simulate_table(table, threads))
     if plan.tables:
         progress(len(plan.tables), len(plan.tables), "simulate")
     return made
-
-
-def _film_arrays(width: int, height: int, device: str) -> FilmArrays:
-    film = FilmArrays()
-    for name, dtype in _SUMS.items():
-        setattr(film, name, wp.zeros((height, width), dtype=dtype, device=device))
-    film.nearest.fill_(1e30)
-    film.instance.fill_(-1)
-    return film
 
 
 def render(
@@ -100,41 +76,18 @@ def render(
     tables = simulate_tables(plan, threads, progress)
     simulated = time.perf_counter()
     built = assemble(scene, plan, tables, device)
-
-    from ..kernels.render_device import make_kernel
-
-    kernel = make_kernel(built.key)
-    fresh = built.key not in _compiled
-    if fresh:
-        progress(0, 1, "compile")
-    wp.load_module(kernel.module, device=device)
-    _compiled.add(built.key)
-    if fresh:
-        progress(1, 1, "compile")
+    kernel, fresh = loaded(built.key, device, progress)
     compiled = time.perf_counter()
 
     x0, x1, y0, y1 = plan.window
     width, height = x1 - x0, y1 - y0
-    film = _film_arrays(width, height, device)
+    film = film_arrays(width, height, device)
     jobs = tiles(width, height, settings.tile)
     total = width * height * spp
-    key = checkpoints.digest(
-        __version__,
-        scene_digest(scene),
-        plan.settings.seed,
-        spp,
-        plan.size,
-        plan.window,
-        jobs[0],
-        plan.layers,
-        plan.tables,
-        built.key,
-        settings.filter_width,
-        settings.max_depth,
-    )
+    key = render_digest(scene, plan, built)
     on_cpu = wp.get_device(device).is_cpu
     finished = np.zeros(len(jobs), bool)
-    views = {name: getattr(film, name).numpy() for name in _SUMS} if on_cpu else {}
+    views = {name: getattr(film, name).numpy() for name in SUMS} if on_cpu else {}
     if checkpoint and resume:
         empty = {name: view[0, 0].copy() for name, view in views.items()}
         stored = checkpoints.load(checkpoint, key, views)
@@ -148,22 +101,11 @@ def render(
     last = [time.perf_counter()]
 
     def worker() -> Callable[[Tile], None]:
-        window: Any = Window()
-        window.x0, window.y0, window.seed = x0, y0, settings.seed or 0
-        window.filter_width, window.max_depth = settings.filter_width, settings.max_depth
-        if settings.integrator == "direct":
-            window.max_depth = 1
-        command = wp.launch(
-            kernel, dim=1, inputs=[window, *built.inputs, film], device=device, record_cmd=True, record_tape=False
-        )
+        launch = launcher(kernel, built, plan, film, device)
 
         def work(tile: Tile) -> None:
-            window.tile_x, window.tile_y, window.tile_w, window.tile_h = tile.x, tile.y, tile.width, tile.height
-            command.set_dim(tile.width * tile.height)
             for first in range(0, spp, SAMPLES_A_LAUNCH):
-                window.first, window.count = first, min(SAMPLES_A_LAUNCH, spp - first)
-                command.set_param_at_index(0, window)
-                command.launch()
+                launch(tile, first, min(SAMPLES_A_LAUNCH, spp - first))
 
         return work
 
@@ -190,7 +132,7 @@ def render(
         Path(checkpoint).unlink(missing_ok=True)
     traced = time.perf_counter()
 
-    sums = {name: getattr(film, name).numpy() for name in _SUMS}
+    sums = {name: getattr(film, name).numpy() for name in SUMS}
     images = develop.aovs(sums, scene, spp)
     invalid = int(sums["invalid"].sum())
     warnings = built.warnings + plan.warnings
@@ -214,7 +156,27 @@ def render(
     return Film(images, stats, header, plan.size, plan.window, warnings)
 
 
+def render_digest(scene: Scene, plan: EffectPlan, built: Assembled) -> str:
+    """Hash of everything that decides an image and its tiles."""
+    settings = plan.settings
+    x0, x1, y0, y1 = plan.window
+    return digest(
+        __version__,
+        scene_digest(scene),
+        settings.seed,
+        settings.spp or 1,
+        plan.size,
+        plan.window,
+        tiles(x1 - x0, y1 - y0, settings.tile)[0],
+        plan.layers,
+        plan.tables,
+        built.key,
+        settings.filter_width,
+        settings.max_depth,
+    )
+
+
 def scene_digest(scene: Scene) -> str:
     """Hash of everything in the scene that decides an image."""
     decisive = [f.name for f in fields(scene) if f.name not in ("warnings", "seconds")]
-    return checkpoints.digest(*(getattr(scene, name) for name in decisive))
+    return digest(*(getattr(scene, name) for name in decisive))

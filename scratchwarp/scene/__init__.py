@@ -11,6 +11,7 @@ Files:
     output      RenderProduct, RenderOptions: what the stage asks the renderer for
     settings    Settings: what the user asks for
     world       Scene
+    digest      a hash of records and arrays
     errors      StageError: the input is at fault
 """
 
