@@ -1,7 +1,8 @@
 """Scripts that people run and copy: one task a file, each with main(argv).
 
 Files:
-    author_demo               writes the demo stages: demo_ball, demo_kettle, demo_panel, demo_plain; demo_shapes has
-                              their meshes, demo_usd puts them on a stage
+    author_demo               writes the demo stages: demo_ball, demo_kettle, demo_panel, demo_plain, and those that
+                              diffract: demo_spoon, demo_disc, demo_vinyl; demo_shapes has their meshes, demo_usd puts
+                              them on a stage
     profile_from_topography   takes a cross-section out of a height map
 """

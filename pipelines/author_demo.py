@@ -1,6 +1,7 @@
-"""Write the demo stages: ball.usda, kettle.usda, panel.usda and plain.usda.
+"""Write the demo stages: ball.usda, kettle.usda, panel.usda and plain.usda, and on request those that diffract.
 
-They are the stages of the README's picture, of the tests and of the benchmarks. Nothing in them is a binary file.
+They are the stages of the README's picture, of the tests and of the benchmarks. Nothing in them is a binary file. Fine
+scratches that diffract are on spoon, spoon_star, spoon_window, spoon_dome, disc and vinyl: ask for them with --only.
 """
 
 import argparse
@@ -9,22 +10,37 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from .demo_ball import ball
+from .demo_disc import disc
 from .demo_kettle import kettle
 from .demo_panel import panel
 from .demo_plain import plain
+from .demo_spoon import spoon, spoon_dome, spoon_star, spoon_window
+from .demo_vinyl import vinyl
 
-__all__ = ["STAGES", "author", "ball", "kettle", "main", "panel", "plain"]
+__all__ = ["DEFAULT", "STAGES", "author", "ball", "disc", "kettle", "main", "panel", "plain", "spoon", "vinyl"]
 
-STAGES: dict[str, Callable[[Path, float], Path]] = {"ball": ball, "kettle": kettle, "panel": panel, "plain": plain}
+STAGES: dict[str, Callable[[Path, float], Path]] = {
+    "ball": ball,
+    "kettle": kettle,
+    "panel": panel,
+    "plain": plain,
+    "spoon": spoon,
+    "spoon_star": spoon_star,
+    "spoon_window": spoon_window,
+    "spoon_dome": spoon_dome,
+    "disc": disc,
+    "vinyl": vinyl,
+}
+DEFAULT = ("ball", "kettle", "panel", "plain")
 
 
-def author(out_dir: Path | str, detail: float = 1.0, names: Sequence[str] = tuple(STAGES)) -> list[Path]:
+def author(out_dir: Path | str, detail: float = 1.0, names: Sequence[str] = DEFAULT) -> list[Path]:
     """Write ``names`` into ``out_dir`` and return their paths; files of an earlier run are replaced.
 
     Args:
         out_dir: folder, made when it is not there.
         detail: scales the number of faces and curve points; 0.1 makes small stages for tests.
-        names: some of ball, kettle, panel, plain.
+        names: some of ``STAGES``.
 
     Raises:
         ValueError: an unknown name, or a detail that is not positive.
@@ -48,7 +64,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     )
     parser.add_argument("out_dir", type=Path, help="folder to write into; made when it is not there")
     parser.add_argument("--detail", type=float, default=1.0, help="scales the number of faces [1]")
-    parser.add_argument("--only", nargs="+", choices=tuple(STAGES), default=tuple(STAGES), help="write only these")
+    parser.add_argument(
+        "--only", nargs="+", choices=tuple(STAGES), default=DEFAULT, metavar="NAME",
+        help=f"write only these of {', '.join(STAGES)}",
+    )  # fmt: skip
     options = parser.parse_args(argv)
     try:
         paths = author(options.out_dir, options.detail, options.only)

@@ -139,16 +139,24 @@ def layer(
             prim.GetRelationship(f"scratch:layer:{name}:{key}").SetTargets([target])
 
 
+def wave(owner: UsdShade.Material, **values: Any) -> None:
+    """Apply ScratchWaveAPI: the material's scratches diffract; attributes under scratch:wave:."""
+    owner.GetPrim().ApplyAPI("ScratchWaveAPI")
+    for key, value in values.items():
+        _set(owner.GetPrim(), f"scratch:wave:{key}", value)
+
+
 def curves(
     stage: Usd.Stage,
     name: str,
     lines: Sequence[np.ndarray],
-    width: float,
-    depth: float,
+    width: float | np.ndarray,
+    depth: float | np.ndarray,
     space: str,
     move: Vector | None = None,
 ) -> Sdf.Path:
-    """Explicit scratches: polylines [n, 3] on one BasisCurves prim; ``width``, ``depth`` in micrometres.
+    """Explicit scratches: polylines [n, 3] on one BasisCurves prim; ``width``, ``depth`` in micrometres, one for all or
+    one for each line.
 
     ``space`` object: points lie on the surface, in the stage's units; uv: points are (u, v, 0).
     """
@@ -158,17 +166,18 @@ def curves(
     prim.CreateTypeAttr(UsdGeom.Tokens.linear)
     prim.CreatePointsAttr(Vt.Vec3fArray.FromNumpy(points))
     prim.CreateCurveVertexCountsAttr(Vt.IntArray([len(line) for line in lines]))
-    units = width * 1e-6 / UsdGeom.GetStageMetersPerUnit(stage)
-    prim.CreateWidthsAttr(Vt.FloatArray([units]))
-    prim.SetWidthsInterpolation(UsdGeom.Tokens.constant)
-    low, high = points.min(0) - units / 2, points.max(0) + units / 2
+    units = np.atleast_1d(width) * 1e-6 / UsdGeom.GetStageMetersPerUnit(stage)
+    prim.CreateWidthsAttr(Vt.FloatArray.FromNumpy(units.astype(np.float32)))
+    prim.SetWidthsInterpolation(UsdGeom.Tokens.constant if len(units) == 1 else UsdGeom.Tokens.uniform)
+    low, high = points.min(0) - units.max() / 2, points.max(0) + units.max() / 2
     prim.CreateExtentAttr(Vt.Vec3fArray.FromNumpy(np.stack([low, high]).astype(np.float32)))
     prim.GetPrim().ApplyAPI("ScratchCurvesAPI")
     _set(prim.GetPrim(), "scratch:curves:space", space)
     primvars = UsdGeom.PrimvarsAPI(prim)
-    for key, value in (("width", width), ("depth", depth)):
-        kind = Sdf.ValueTypeNames.FloatArray
-        primvars.CreatePrimvar(f"scratch:{key}", kind, UsdGeom.Tokens.constant).Set([float(value)])
+    for key, values in (("width", np.atleast_1d(width)), ("depth", np.atleast_1d(depth))):
+        varies = UsdGeom.Tokens.constant if len(values) == 1 else UsdGeom.Tokens.uniform
+        primvar = primvars.CreatePrimvar(f"scratch:{key}", Sdf.ValueTypeNames.FloatArray, varies)
+        primvar.Set(Vt.FloatArray.FromNumpy(np.asarray(values, np.float32)))
     if move is not None:
         place(prim, move)
     if space == "uv":
@@ -227,6 +236,18 @@ def rect_light(
     half = Gf.Vec3f(size[0] / 2, size[1] / 2, 0)
     prim.CreateExtentAttr(Vt.Vec3fArray([-half, half]))
     _light(prim, radiance, color, looking(at, target, up))
+
+
+def mesh_light(
+    stage: Usd.Stage, name: str, shape: Shape, move: Vector, radiance: float, color: Vector = (1, 1, 1)
+) -> None:
+    """A mesh that shines from its outside: /World/lights/<name>."""
+    black = material(stage, name, diffuseColor=(0.0, 0.0, 0.0), roughness=1.0)
+    prim = mesh(stage, name, shape, black, move)
+    api = UsdLux.MeshLightAPI.Apply(prim.GetPrim())
+    light = UsdLux.LightAPI(api)
+    light.CreateIntensityAttr(float(radiance))
+    light.CreateColorAttr(Gf.Vec3f(*map(float, color)))
 
 
 def distant_light(

@@ -195,7 +195,7 @@ _EXAMPLES = {
     "view": "scratchwarp view ball.usda\n  scratchwarp view ball.usda --screenshot look.png --frame 12\n"
     "  scratchwarp view ball.usda --profile hairlines\n  scratchwarp view quartic",
     "cache": "scratchwarp cache\n  scratchwarp cache --clear",
-    "demo": "scratchwarp demo out\n  scratchwarp demo out -w 320 --spp 4",
+    "demo": "scratchwarp demo out\n  scratchwarp demo out -w 320 --spp 4\n  scratchwarp demo out --only spoon",
 }
 
 
@@ -288,6 +288,10 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("--imageWidth", "-w", type=int, default=480, metavar="PIXELS", help="[480]")
     made.add_argument("--spp", type=int, default=8, help="samples a pixel [8]")
     made.add_argument("--threads", type=int, help="worker threads [all cores]")
+    made.add_argument(
+        "--only", nargs="+", metavar="NAME",
+        help="these stages alone; spoon, spoon_star, spoon_window, spoon_dome, disc and vinyl only on request",
+    )  # fmt: skip
 
     made = command("cache", "say what is kept on disk between runs, or clear it")
     made.add_argument("--clear", action="store_true", help="remove all simulated tables")

@@ -200,13 +200,17 @@ def demo(args: Command) -> int:
     """Author the demo stages in OUT_DIR and render each to EXR and PNG."""
     import scratchwarp as sw
 
-    from .pipelines.author_demo import author
+    from .pipelines.author_demo import DEFAULT, STAGES, author
     from .render import bar
 
+    names = args.only or DEFAULT
+    for name in names:
+        if name not in STAGES:
+            raise UsageError(f"--only {name!r} is none of {', '.join(STAGES)}")
     settings = sw.Settings(width=args.imageWidth, spp=args.spp, threads=args.threads)
     Path(args.out).mkdir(parents=True, exist_ok=True)
     told: set[str] = set()
-    for stage in author(args.out):
+    for stage in author(args.out, names=names):
         stage = Path(stage)
         scene = sw.read(stage)
         with bar(args.quiet, stage.stem) as progress:

@@ -18,7 +18,7 @@ DETAIL = 0.1
 @pytest.fixture(scope="module")
 def stages(tmp_path_factory):
     """Small versions of all stages: name -> path."""
-    paths = author_demo.author(tmp_path_factory.mktemp("demo"), detail=DETAIL)
+    paths = author_demo.author(tmp_path_factory.mktemp("demo"), DETAIL, tuple(author_demo.STAGES))
     return {path.stem: path for path in paths}
 
 
@@ -95,6 +95,33 @@ def test_layers_and_profiles_are_tied_together(path):
         assert all(stage.GetPrimAtPath(line).HasAPI("ScratchCurvesAPI") for line in lines)
 
 
+def test_the_spoon_is_closed_and_evenly_charted(stages):
+    """Every face looks outwards; uv are neither mirrored nor folded, nor more than 1.8 times out of scale where the
+    scratches lie; widths and depths are 0.8 to 6 um, scratch by scratch, on one prim."""
+    scene = read(stages["spoon"])
+    (placed,) = [i for i in scene.instances if i.path == "/World/geo/spoon"]
+    mesh = scene.meshes[placed.mesh]
+    corners = mesh.points[mesh.triangles]
+    facing = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    assert ((facing * mesh.normals.mean(axis=1)).sum(axis=1) > 0).all()
+    edges = np.concatenate([mesh.triangles[:, [i, (i + 1) % 3]] for i in range(3)])
+    at = np.unique(mesh.points.round(4), axis=0, return_inverse=True)[1].reshape(-1)
+    directed, twice = np.unique(at[edges], axis=0, return_counts=True)
+    there = {tuple(edge) for edge in directed}
+    assert (twice == 1).all() and all((b, a) in there for a, b in there)
+    a, b = (mesh.uvs["st"][:, i] - mesh.uvs["st"][:, 0] for i in (1, 2))
+    area = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    assert (area > 0).all()
+    top = mesh.uvs["st"][:, :, 1].min(axis=1) > 0.5
+    scale = np.linalg.norm(facing[top], axis=1) / area[top] / 19.0**2
+    assert 0.99 < scale.min() and scale.max() < 1.8
+    (curves,) = scene.curves
+    assert curves.space == "uv" and len(curves.counts) == 10000 * DETAIL
+    for values in (curves.widths, curves.depths):
+        each = values[::2]
+        assert np.array_equal(each, values[1::2]) and 0.8 <= each.min() < 1.0 and 5.8 < each.max() <= 6.0
+
+
 def test_running_twice_replaces_the_files(tmp_path):
     """Same bytes the second time, nothing else in the folder, and a stage that is open sees the new file."""
     first = author_demo.author(tmp_path, DETAIL, ["panel"])[0]
@@ -138,7 +165,8 @@ def test_stages_read_without_a_warning(path):
     assert scene.warnings == ()
     stage = Usd.Stage.Open(str(path))
     assert sum(len(material.layers) for material in scene.materials) == len(list(layers(stage)))
-    assert len(scene.lights) == len(stage.GetPrimAtPath("/World/lights").GetChildren())
+    glowing = [prim for prim in stage.Traverse() if prim.HasAPI("MeshLightAPI")]
+    assert len(scene.lights) == len(stage.GetPrimAtPath("/World/lights").GetChildren()) + len(glowing)
     assert scene.options.resolution == (640, 480)
     low, high = scene.bounds()
     assert 0.1 < np.linalg.norm(high - low) < 10.0
@@ -156,7 +184,7 @@ def test_the_rosette_lies_on_its_tile(stages):
 
 def test_the_camera_sees_the_whole_subject(stages):
     """Corners of the main object's bounding box project inside the picture."""
-    subjects = {"ball": "ball", "kettle": "body", "panel": "door", "plain": "plastic"}
+    subjects = {"ball": "ball", "kettle": "body", "panel": "door", "plain": "plastic", "spoon": "spoon", "disc": "rim"}
     for name, subject in subjects.items():
         scene = read(stages[name])
         (found,) = [i for i in scene.instances if i.path == f"/World/geo/{subject}"]
