@@ -5,6 +5,7 @@ micro-structure in micrometres.
 """
 
 from pathlib import Path
+from typing import Any
 
 from . import demo_shapes as shapes
 from . import demo_usd as usd
@@ -17,7 +18,7 @@ def vinyl(path: Path | str, detail: float = 1.0) -> Path:
     """Write the stage; ``detail`` scales the number of faces."""
     stage = usd.new_stage()
     around = max(24, int(180 * detail))
-    lacquer = {"diffuseColor": (0.004, 0.004, 0.004), "roughness": 0.15, "ior": 1.54}
+    lacquer: dict[str, Any] = {"diffuseColor": (0.004, 0.004, 0.004), "roughness": 0.15, "ior": 1.54}
     pressed = usd.material(stage, "pressed", **lacquer)
     usd.wave(pressed, summation="coherent")
     groove = usd.profile(pressed, "groove", shape="vGroove")
