@@ -194,6 +194,7 @@ _EXAMPLES = {
     "validate": "scratchwarp validate ball.usda\n  scratchwarp validate ball.usda --strict --json",
     "view": "scratchwarp view ball.usda\n  scratchwarp view ball.usda --screenshot look.png --frame 12\n"
     "  scratchwarp view ball.usda --profile hairlines\n  scratchwarp view quartic",
+    "fit": "scratchwarp fit cloth.bin cloth.usda --report cloth\n  scratchwarp fit paint.binary paint.usda --modes 1",
     "cache": "scratchwarp cache\n  scratchwarp cache --clear",
     "demo": "scratchwarp demo out\n  scratchwarp demo out -w 320 --spp 4\n  scratchwarp demo out --only spoon",
 }
@@ -282,6 +283,14 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("--camera", "-cam", metavar="NAME", help="camera prim, by path or name")
     made.add_argument("--imageWidth", "-w", type=int, metavar="PIXELS", help="of the rendered image in it")
     made.add_argument("--spp", type=int, help="samples a pixel of the rendered image in it")
+
+    made = command("fit", "fit highlight stencils to a measured BRDF, written as a material", json_too=True)
+    made.add_argument("measured", metavar="MEASURED", help="UTIA .bin, MERL .binary or RGL .bsdf")
+    made.add_argument("out", metavar="OUT", help="material.usda, .usdc or .usd")
+    made.add_argument("--report", metavar="DIR", help="pictures, differences, metrics and rival models as a web page")
+    made.add_argument("--modes", type=int, metavar="N", help="axes of anisotropy [as many as are found]")
+    made.add_argument("--no-refine", action="store_true", help="the direct fit alone: no scipy, no rivals")
+    made.add_argument("--retro", action="store_true", help="highlights return to the light")
 
     made = command("demo", "author the demo stages and render each to EXR and PNG")
     made.add_argument("out", metavar="OUT_DIR", help="folder for stages and images; made when missing")

@@ -196,6 +196,39 @@ def view(args: Command) -> int:
     return 0
 
 
+def fit(args: Command) -> int:
+    """Fit stencils to MEASURED, write them as a material, and report how close they and their rivals come."""
+    from .pipelines import measured_material
+    from .reflectance import measured
+    from .render import bar
+    from .study import fit_candidates, fit_report
+
+    if Path(args.out).suffix.lower() not in measured_material.SUFFIXES:
+        raise UsageError(f"OUT {args.out!r} ends in none of {', '.join(measured_material.SUFFIXES)}")
+    if args.modes is not None and not 1 <= args.modes <= 12:
+        raise UsageError(f"--modes {args.modes} is not in [1, 12]")
+    brdf = measured.load(args.measured)
+    rivals = measured.RIVALS if args.report and not args.no_refine else ()
+    with bar(args.quiet, Path(args.measured).name) as progress:
+        found = fit_candidates.candidates(
+            brdf, args.modes, not args.no_refine, args.retro, rivals=rivals, progress=progress
+        )
+    ours, name = found[0], Path(args.measured).name
+    measured_material.author(ours.model, args.out, comment=f"Fitted to {name} by scratchwarp.")
+    written = [args.out]
+    if args.report:
+        notes = [f"Highlight stencils fitted to {name}, {'directly' if args.no_refine else 'then by least squares'}."]
+        if args.no_refine:
+            notes.append("Rival models are fitted by least squares too, and were left out with it.")
+        written.append(str(fit_report.write(args.report, f"{name}: a fit", brdf, found, notes)))
+    if args.json:
+        rows = [fit_report.record(one) for one in found]
+        print(json.dumps({"written": written, "candidates": rows}, default=_plain), flush=True)
+    elif not args.quiet:
+        print("\n".join([fit_report.table(found), *written]), flush=True)
+    return 0
+
+
 def demo(args: Command) -> int:
     """Author the demo stages in OUT_DIR and render each to EXR and PNG."""
     import scratchwarp as sw
@@ -301,4 +334,4 @@ def _plain(value: Any) -> Any:
     return value.tolist() if hasattr(value, "tolist") else str(value)
 
 
-COMMANDS = {run.__name__: run for run in (render, explain, simulate, validate, view, demo, cache)}
+COMMANDS = {run.__name__: run for run in (render, explain, simulate, validate, view, fit, demo, cache)}

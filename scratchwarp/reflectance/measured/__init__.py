@@ -14,6 +14,7 @@ _PUBLIC = {
     "compare": "comparison",
     "fit_rival": "rivals",
     "load": "files",
+    "lobes_for": "rivals",
     "save_utia": "files",
 }
 

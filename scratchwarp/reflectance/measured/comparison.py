@@ -28,8 +28,8 @@ def compare(a: Any, b: Any) -> dict[str, float]:
         psnr = float("inf")
     else:
         psnr = 20.0 * float(np.log10(peak / rmse)) if peak > 0.0 else float("-inf")
-    delta_e = float(np.mean(np.linalg.norm(_lab(first) - _lab(second), axis=-1)))
-    return {"delta_e": delta_e, "rmse": rmse, "psnr": psnr, "ssim": _ssim(first @ _LUMINANCE, second @ _LUMINANCE)}
+    delta_e = float(np.mean(np.linalg.norm(lab(first) - lab(second), axis=-1)))
+    return {"delta_e": delta_e, "rmse": rmse, "psnr": psnr, "ssim": _ssim(luminance(first), luminance(second))}
 
 
 def _image(name: str, values: Any) -> np.ndarray:
@@ -41,8 +41,13 @@ def _image(name: str, values: Any) -> np.ndarray:
     return image
 
 
-def _lab(rgb: np.ndarray) -> np.ndarray:
-    """CIE L*a*b* of linear Rec.709, white at (1, 1, 1)."""
+def luminance(rgb: np.ndarray) -> np.ndarray:
+    """Luminance [...] of linear Rec.709 [..., 3]."""
+    return rgb @ _LUMINANCE
+
+
+def lab(rgb: np.ndarray) -> np.ndarray:
+    """CIE L*a*b* [..., 3] of linear Rec.709, white at (1, 1, 1)."""
     t = np.maximum(rgb, 0.0) @ _TO_XYZ.T / _TO_XYZ.sum(axis=1)
     f = np.where(t > (6.0 / 29.0) ** 3, np.cbrt(t), t * (29.0 / 6.0) ** 2 / 3.0 + 4.0 / 29.0)
     return np.stack(

@@ -17,6 +17,13 @@ _SAMPLES = 1500
 _LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 
+def lobes_for(model: str, parameters: int) -> int:
+    """How many lobes, 1 to 4, a rival needs to have at least ``parameters`` numbers; ValueError on an unknown model."""
+    if model not in SHAPES:
+        raise ValueError(f"model must be one of {', '.join(RIVALS)}, got {model!r}")
+    return int(np.clip(np.ceil((parameters - 3) / (len(SHAPES[model].low) + 3)), 1, 4))
+
+
 @dataclass(frozen=True, eq=False)
 class Rival:
     """kd + sum of ks times a lobe, for each channel: ``model`` one of ``RIVALS``, ``lobes`` [count, numbers] of

@@ -98,6 +98,11 @@ class Model:
         if self.mask not in MASKS:
             raise ValueError(f"model: mask must be one of {', '.join(MASKS)}, got {self.mask!r}")
 
+    @property
+    def parameters(self) -> int:
+        """How many numbers it has: 10 a mode, a translucency for each crossing, background and specular factor."""
+        return 10 * len(self.modes) + len(self.beta) + 3
+
     def edit(self, mode: int, **changes: Any) -> "Model":
         """This model with fields of one of its modes replaced."""
         if not -len(self.modes) <= mode < len(self.modes):
