@@ -18,8 +18,8 @@ Files (device):
     direct_device   light sampling and lights that rays meet
 """
 
-from .assemble import Assembled, assemble, kernel_key
+from .assemble import Assembled, assemble, camera_data, kernel_key
 from .key import KernelKey
 from .parts import Parts
 
-__all__ = ["Assembled", "KernelKey", "Parts", "assemble", "kernel_key"]
+__all__ = ["Assembled", "KernelKey", "Parts", "assemble", "camera_data", "kernel_key"]

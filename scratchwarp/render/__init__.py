@@ -4,6 +4,7 @@ Files:
     renderer    render(scene, plan) -> Film
     tiles       tiles over threads
     launch      one kernel over tiles of one film
+    session     Session: a scene that is changed while its image refines; steps are the ways it gets better
     film        Film and its AOVs
     develop     sums -> AOVs and header
     checkpoint  finished tiles on disk
@@ -21,8 +22,9 @@ from ..scene import Scene
 from .film import AOVS, Film
 from .progress import bar
 from .renderer import render
+from .session import Redone, Session
 
-__all__ = ["AOVS", "Film", "bar", "render"]
+__all__ = ["AOVS", "Film", "Redone", "Session", "bar", "render"]
 
 
 class _Room(types.ModuleType):
