@@ -6,4 +6,6 @@ Files:
                               them on a stage
     measured_material         fits highlight stencils to a measured BRDF and writes them as a Material
     profile_from_topography   takes a cross-section out of a height map
+    scratch_map               makes a seamless normal map of scratches, and (scratch_plate) a stage that shows
+                              it
 """

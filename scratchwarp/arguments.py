@@ -195,6 +195,8 @@ _EXAMPLES = {
     "view": "scratchwarp view ball.usda\n  scratchwarp view ball.usda --screenshot look.png --frame 12\n"
     "  scratchwarp view ball.usda --profile hairlines\n  scratchwarp view quartic",
     "fit": "scratchwarp fit cloth.bin cloth.usda --report cloth\n  scratchwarp fit paint.binary paint.usda --modes 1",
+    "scratchmap": "scratchwarp scratchmap hairlines.png --direction 0 --spread 4 --density 900\n"
+    "  scratchwarp scratchmap worn.exr --resolution 1024 --stage worn.usda --repeat 3",
     "cache": "scratchwarp cache\n  scratchwarp cache --clear",
     "demo": "scratchwarp demo out\n  scratchwarp demo out -w 320 --spp 4\n  scratchwarp demo out --only spoon",
 }
@@ -203,6 +205,7 @@ _EXAMPLES = {
 def parser() -> argparse.ArgumentParser:
     """The whole command line: ``args.command`` is the name of the function of ``cli`` to run."""
     from . import __version__
+    from .pipelines import scratch_map
     from .viewers import KEYS, PROFILE_KEYS
 
     whole = argparse.ArgumentParser(
@@ -291,6 +294,8 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("--modes", type=int, metavar="N", help="axes of anisotropy [as many as are found]")
     made.add_argument("--no-refine", action="store_true", help="the direct fit alone: no scipy, no rivals")
     made.add_argument("--retro", action="store_true", help="highlights return to the light")
+
+    scratch_map.add_arguments(command("scratchmap", "make a seamless normal map of scratches"))
 
     made = command("demo", "author the demo stages and render each to EXR and PNG")
     made.add_argument("out", metavar="OUT_DIR", help="folder for stages and images; made when missing")

@@ -229,6 +229,19 @@ def fit(args: Command) -> int:
     return 0
 
 
+def scratchmap(args: Command) -> int:
+    """Make a seamless normal map of scratches."""
+    from .pipelines import scratch_map
+
+    try:
+        written = scratch_map.run(args)
+    except ValueError as error:
+        raise UsageError(str(error)) from error
+    if not args.quiet:
+        print(*written, sep="\n", flush=True)
+    return 0
+
+
 def demo(args: Command) -> int:
     """Author the demo stages in OUT_DIR and render each to EXR and PNG."""
     import scratchwarp as sw
@@ -334,4 +347,4 @@ def _plain(value: Any) -> Any:
     return value.tolist() if hasattr(value, "tolist") else str(value)
 
 
-COMMANDS = {run.__name__: run for run in (render, explain, simulate, validate, view, fit, demo, cache)}
+COMMANDS = {run.__name__: run for run in (render, explain, simulate, validate, view, fit, scratchmap, demo, cache)}
