@@ -27,6 +27,7 @@ _PUBLIC = {
     "EffectPlan": ("scratchwarp.plan", "EffectPlan"),
     "EffectChoice": ("scratchwarp.plan", "EffectChoice"),
     "Film": ("scratchwarp.render", "Film"),
+    "grooves": ("scratchwarp.reflectance.grooves", None),
     "mdf": ("scratchwarp.reflectance.mdf", None),
     "measured": ("scratchwarp.reflectance.measured", None),
     "diffraction": ("scratchwarp.reflectance.diffraction", None),
