@@ -44,6 +44,7 @@ def add_settings(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--crop", type=float, nargs=4, metavar=("X0", "X1", "Y0", "Y1"), help="part of the image, 0 to 1 from top left"
     )
+    group.add_argument("--model", metavar="NAME", help="of all scratches: table, ashikhminShirley, ...")
     group.add_argument("--threads", type=int, help="worker threads [all cores]; the image does not depend on it")
     group.add_argument(
         "--effect", action="append", default=[], metavar="NAME=on|off", help="force an effect that explain lists"
@@ -80,6 +81,7 @@ def settings(args: argparse.Namespace) -> "Settings":
             crop=tuple(args.crop) if args.crop else None,
             threads=args.threads,
             effects=dict(_effect(text) for text in args.effect),
+            model=args.model,
         )
     except ValueError as error:
         raise UsageError(str(error)) from error

@@ -11,6 +11,8 @@ from .. import lights
 from ..lights.light_device import Light
 from ..plan import EffectPlan
 from ..reflectance import profile_table
+from ..reflectance.responses import RESPONSES
+from ..reflectance.responses.pack import pack as pack_responses
 from ..reflectance.texture import pack_textures
 from ..scene import MeshLight, Scene
 from ..scene.digest import digest
@@ -69,6 +71,7 @@ def kernel_key(scene: Scene, plan: EffectPlan) -> KernelKey:
         light_multipliers=on("lights.multipliers"),
         mesh_lights="mesh" in kinds,
         path=on("indirect"),
+        responses=tuple(n for n, r in RESPONSES.items() if on(r.effect) and (distributions or r.base)),
     )
 
 
@@ -160,5 +163,7 @@ def assemble(
     light_set.arrays = packed.arrays
     scratch_set.layers, scratch_set.segments = stuff.layers, strokes
     scratch_set.tables = parts.part("tables", tuple(tables), lambda: profile_table.pack(tables, device))
+    used = plan.responses if key.responses else ()
+    scratch_set.responses = parts.part("responses", (digest(used),), lambda: pack_responses(used, device))
     inputs = (camera_data(scene, plan), shape.arrays, stuff.arrays, scratch_set, light_set)
     return Assembled(key, inputs, (shape, stuff, packed, sets), packed.warnings)

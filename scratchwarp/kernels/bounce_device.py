@@ -4,13 +4,15 @@ import warp as wp
 
 from ..lights.mesh_device import mesh_light_hit, span_mesh
 from ..optics.frames_device import Frame, frame_with_tangent, to_local, to_world
-from ..reflectance.base_device import Base, base_albedo, base_eval_pdf, base_fresnel, base_pdf, base_sample
+from ..reflectance.base_device import Base, base_albedo, base_fresnel
 from ..reflectance.profile_table_device import TableArrays, cone_direction, table_row, table_sample
-from .geometry_device import Geometry, Surface
+from ..reflectance.responses.response_device import ResponseArrays, Spot
+from .geometry_device import Geometry, Surface, uv_motion
 from .key import KernelKey
 from .layers_device import make_gather
 from .lobe_device import Lobe, largest, mirrored_at, multiplier, power_heuristic
-from .material_device import MaterialArrays, MaterialData
+from .lobe_terms_device import make_lobe_terms, make_place
+from .material_device import MaterialArrays, MaterialData, cut_out
 from .world_device import LightSet, ScratchSet
 
 wp.set_module_options({"enable_backward": False})
@@ -28,15 +30,26 @@ class Scatter:
     diffuse_share: wp.vec3
 
 
-@wp.func
-def cut_out(m: MaterialData) -> bool:
-    """Whether opacity removes the surface, its specular reflection included."""
-    return m.presence == 1 or m.opacity_threshold > 0.0
-
-
 def make_bounce(key: KernelKey, rotated, emission_at):
     """(choose, scatter, glow, pass_through, pass_probability), compiled for ``key``."""
     gather = make_gather(key)
+    terms_of, drawn = make_lobe_terms(key)
+    place = make_place(key)
+
+    @wp.func
+    def spot_of(g: Geometry, s: Surface, frame: Frame, step_x: wp.vec3, step_y: wp.vec3) -> Spot:
+        spot = Spot()
+        spot.uv = s.uv
+        spot.jx = uv_motion(g, s, step_x)
+        spot.jy = uv_motion(g, s, step_y)
+        # of the mapping seen from the viewer's side; a mirrored one is mirrored back
+        outward = wp.where(s.outside == 1, 1.0, -1.0)
+        du = g.dpdu[s.face]
+        side = wp.where(wp.dot(wp.cross(du, g.dpdv[s.face]), outward * s.ng) < 0.0, -1.0, 1.0)
+        local = frame_with_tangent(outward * s.ns, du)
+        spot.u_axis = outward * wp.vec2(wp.dot(local.x, frame.x), wp.dot(local.x, frame.y))
+        spot.v_axis = outward * side * wp.vec2(wp.dot(local.y, frame.x), wp.dot(local.y, frame.y))
+        return spot
 
     @wp.func
     def choose(
@@ -76,7 +89,7 @@ def make_bounce(key: KernelKey, rotated, emission_at):
                         lobe.frame = frame_with_tangent(frame.n, laid.direction)
                         lobe.wo = to_local(lobe.frame, wo)
                         if wp.static(key.diffuse_scratches):
-                            if layer.table < 0:
+                            if layer.table < 0 and layer.response < 0:
                                 lobe.scratch = 2
                                 lobe.base.diffuse = layer.diffuse
                                 lobe.base.clearcoat_alpha = 1.0
@@ -85,6 +98,12 @@ def make_bounce(key: KernelKey, rotated, emission_at):
                                 lobe.base.ior = 1.5
                                 lobe.w_diffuse = 1.0
                                 lobe.w_specular = 0.0
+                        if wp.static(len(key.responses) > 0):
+                            if layer.response >= 0:
+                                lobe.scratch = 3
+                                lobe.w_specular = 1.0
+                                spot = spot_of(g, s, lobe.frame, step_x, step_y)
+                                lobe.response = place(scratches.responses, layer.response, spot)
                         if lobe.scratch == 1:
                             lobe.table = layer.table
                             phi = wp.atan2(lobe.wo[1], wp.max(lobe.wo[2], 0.0))
@@ -111,7 +130,9 @@ def make_bounce(key: KernelKey, rotated, emission_at):
         return lobe
 
     @wp.func
-    def scatter(tables: TableArrays, lobe: Lobe, s: Surface, u: wp.vec2, v: float) -> Scatter:
+    def scatter(
+        tables: TableArrays, responses: ResponseArrays, lobe: Lobe, s: Surface, u: wp.vec2, v: float
+    ) -> Scatter:
         out = Scatter()
         if wp.static(key.scratches):
             if lobe.scratch == 1:
@@ -124,7 +145,7 @@ def make_bounce(key: KernelKey, rotated, emission_at):
                     out.phi = c.phi
                     out.weight = c.weight * lobe.scale
         if lobe.scratch != 1:
-            b = base_sample(lobe.base, lobe.wo, u, v, lobe.w_diffuse, lobe.w_specular)
+            b = drawn(responses, lobe, u, v)
             if b.pdf > 0.0:
                 out.alive = 1
                 out.direction = to_world(lobe.frame, b.wi)
@@ -134,13 +155,13 @@ def make_bounce(key: KernelKey, rotated, emission_at):
                     out.pdf = -1.0
                 else:
                     if wp.static(key.light_multipliers):
-                        whole = base_eval_pdf(lobe.base, lobe.wo, b.wi, lobe.w_diffuse, lobe.w_specular)
-                        part = base_eval_pdf(lobe.base, lobe.wo, b.wi, lobe.w_diffuse, 0.0)
+                        whole = terms_of(responses, lobe, b.wi, lobe.w_diffuse, lobe.w_specular)
+                        part = terms_of(responses, lobe, b.wi, lobe.w_diffuse, 0.0)
                         for c in range(3):
                             out.diffuse_share[c] = part.value[c] / wp.max(whole.value[c], 1.0e-20)
                     folded = to_local(lobe.frame, mirrored_at(out.direction, s.ng))
                     if folded[2] > 0.0:
-                        out.pdf += base_pdf(lobe.base, lobe.wo, folded, lobe.w_diffuse, lobe.w_specular)
+                        out.pdf += terms_of(responses, lobe, folded, lobe.w_diffuse, lobe.w_specular).pdf
         if out.alive == 1 and wp.dot(out.direction, s.ng) <= 0.0:
             out.direction = mirrored_at(out.direction, s.ng)
             if lobe.scratch == 1:
@@ -149,11 +170,30 @@ def make_bounce(key: KernelKey, rotated, emission_at):
         return out
 
     @wp.func
-    def pass_through(m: MaterialData, base: Base, s: Surface, wo: wp.vec3) -> wp.vec3:
-        """What specular reflection leaves of light that goes straight through (all of it for cut-outs)."""
+    def pass_through(
+        g: Geometry,
+        scratches: ScratchSet,
+        m: MaterialData,
+        base: Base,
+        s: Surface,
+        frame: Frame,
+        wo: wp.vec3,
+        step_x: wp.vec3,
+        step_y: wp.vec3,
+        u_lobe: wp.vec2,
+        u_more: wp.vec2,
+    ) -> wp.vec3:
+        """What specular reflection and scratches leave of light that goes straight through (all of it for cut-outs).
+
+        Nothing passes through scratches of metal and the like; those of glass let through what glass does.
+        """
         result = wp.vec3(1.0, 1.0, 1.0)
         if not cut_out(m):
             result = result - base_fresnel(base, wp.dot(s.ns, wo))
+            if wp.static(key.scratches):
+                if m.layers > 0:
+                    laid = gather(g, scratches, m, s, frame, step_x, step_y, u_lobe[1], u_more[1])
+                    result = (1.0 - laid.covered + laid.kept) * result
         return result
 
     @wp.func

@@ -14,7 +14,6 @@ from ..lights.mesh_device import mesh_light_hit
 from ..lights.registry import MODELS
 from ..optics.frames_device import to_local
 from ..optics.sobol_device import sobol_2d
-from ..reflectance.base_device import base_eval_pdf, base_pdf
 from ..reflectance.profile_table_device import (
     TableArrays,
     cone_direction,
@@ -22,10 +21,12 @@ from ..reflectance.profile_table_device import (
     table_pdf,
     table_value,
 )
+from ..reflectance.responses.response_device import ResponseArrays
 from .geometry_device import Geometry, interpolate_uv, intersect
 from .key import KernelKey
 from .lobe_device import Lobe, largest, mirrored_at, multiplier, power_heuristic
-from .material_device import MaterialArrays
+from .lobe_terms_device import make_lobe_terms
+from .material_device import MaterialArrays, cut_out
 from .world_device import LightSet
 
 PSI = wp.constant(0.5 * 3.14159265 / 180.0)  # half the support of one degree
@@ -55,7 +56,10 @@ def make_transmittance(key: KernelKey, opacity_at):
                         s = intersect(g, start, direction, left)
                         if s.face < 0:
                             return result
-                        result *= 1.0 - opacity_at(arrays, arrays.materials[s.material], interpolate_uv(g, s))
+                        m = arrays.materials[s.material]
+                        result *= 1.0 - opacity_at(arrays, m, interpolate_uv(g, s))
+                        if not cut_out(m):
+                            result *= m.veil
                         start = s.p - s.offset * s.ng
                         left = left - s.t
                 return result
@@ -73,6 +77,7 @@ def make_direct(key: KernelKey, transmittance):
     models = models_of(key)
     finite = [model.name != "dome" for model in models]
     of_mesh = [model.geometry for model in models]
+    terms_of, _ = make_lobe_terms(key)
 
     @wp.func
     def linked(lights: LightSet, light: Light, instance: int) -> bool:
@@ -98,22 +103,22 @@ def make_direct(key: KernelKey, transmittance):
         return result
 
     @wp.func
-    def on_base(lobe: Lobe, light: Light, ls: LightSample, ng: wp.vec3) -> wp.vec3:
+    def on_base(responses: ResponseArrays, lobe: Lobe, light: Light, ls: LightSample, ng: wp.vec3) -> wp.vec3:
         wi = to_local(lobe.frame, ls.wi)
         w_diffuse = lobe.w_diffuse
         w_specular = lobe.w_specular
         if wp.static(key.light_multipliers):
             w_diffuse *= light.diffuse
             w_specular *= light.specular
-        terms = base_eval_pdf(lobe.base, lobe.wo, wi, w_diffuse, w_specular)
+        terms = terms_of(responses, lobe, wi, w_diffuse, w_specular)
         reflected = terms.value
         density = terms.pdf
         if wp.static(key.light_multipliers):
             # the lobe is sampled without knowing the light
-            density = base_pdf(lobe.base, lobe.wo, wi, lobe.w_diffuse, lobe.w_specular)
+            density = terms_of(responses, lobe, wi, lobe.w_diffuse, lobe.w_specular).pdf
         folded = to_local(lobe.frame, mirrored_at(ls.wi, ng))
         if folded[2] > 0.0:
-            more = base_eval_pdf(lobe.base, lobe.wo, folded, w_diffuse, w_specular)
+            more = terms_of(responses, lobe, folded, w_diffuse, w_specular)
             reflected += more.value
             density += more.pdf
         value = wp.cw_mul(reflected, ls.radiance)
@@ -140,6 +145,7 @@ def make_direct(key: KernelKey, transmittance):
         g: Geometry,
         arrays: MaterialArrays,
         tables: TableArrays,
+        responses: ResponseArrays,
         lights: LightSet,
         p: wp.vec3,
         ng: wp.vec3,
@@ -160,7 +166,7 @@ def make_direct(key: KernelKey, transmittance):
                     if lobe.scratch != 1:
                         ls = wp.static(models[j].sample)(lights.arrays, light, p, u)
                         if ls.pdf != 0.0 and wp.dot(ls.wi, ng) > 0.0:
-                            value = on_base(lobe, light, ls, ng)
+                            value = on_base(responses, lobe, light, ls, ng)
                             if largest(value) > 0.0:
                                 total += wp.cw_mul(value, arrives(g, arrays, light, p, ls.wi, ls.distance))
                                 if wp.static(key.shadows):

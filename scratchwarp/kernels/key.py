@@ -19,6 +19,7 @@ class KernelKey:
         light_links: some light picks what it lights.
         light_multipliers: some light's diffuse or specular multiplier is not 1.
         mesh_lights: some geometry is a light. path: indirect bounces.
+        responses: kinds of response over solid angle, of scratches or bases.
     """
 
     lights: tuple[str, ...] = ()
@@ -41,6 +42,7 @@ class KernelKey:
     light_multipliers: bool = False
     mesh_lights: bool = False
     path: bool = False
+    responses: tuple[str, ...] = ()
 
     @property
     def scratches(self) -> bool:

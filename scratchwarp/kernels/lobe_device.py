@@ -5,6 +5,7 @@ import warp as wp
 from ..lights.light_device import Light
 from ..optics.frames_device import Frame
 from ..reflectance.base_device import Base
+from ..reflectance.responses.response_device import ResponseAt
 
 wp.set_module_options({"enable_backward": False})
 
@@ -13,7 +14,7 @@ wp.set_module_options({"enable_backward": False})
 class Lobe:
     """One reflecting lobe at a point, ``scale`` holding 1 / probability of having chosen it."""
 
-    scratch: int  # 1: a mirror cone from a table
+    scratch: int  # 1: a mirror cone from a table, 2: Lambert, 3: a response; 0: the base
     frame: Frame  # shading frame; for a scratch x runs along it
     wo: wp.vec3  # in the frame
     scale: float
@@ -24,6 +25,7 @@ class Lobe:
     row: int
     sin_theta: float  # of the incident cone, sin(theta_i) = -sin(theta_o)
     diffuse_share: wp.vec3  # part of the base's value that is diffuse in the direction that was sampled from it
+    response: ResponseAt  # in place of ``base``; kind 0: none
 
 
 @wp.struct

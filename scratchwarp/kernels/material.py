@@ -93,6 +93,7 @@ def pack_layer(plan: LayerPlan, curves: Any = None) -> LayerData:
     d.bend, d.bend_number = bend(layer)
     d.mean, d.table, d.keeps_diffuse, d.weight = sub.coverage, plan.table, int(plan.keeps_diffuse), plan.weight
     d.diffuse = wp.vec3(*plan.diffuse)
+    d.response = plan.response
     if curves is not None and curves.bvh is not None:
         d.first, d.bvh, d.reach = curves.first, curves.bvh.id, curves.reach
         d.curve_uv, d.width_uv = int(curves.uv), int(curves.width_uv)
@@ -115,6 +116,7 @@ def pack(scene: Scene, layers: list[list[LayerData]], atlas: Any, device: str = 
             _scratch_surface(m, material.surface)
         m.display_color = int(material.uses_display_color)
         m.first_layer, m.layers = len(flat), len(own)
+        m.veil = math.prod(1.0 - min(d.mean, 1.0) for d in own if d.keeps_diffuse == 0 and d.bvh == 0)
         flat.extend(own)
         records.append(m)
     arrays = MaterialArrays()

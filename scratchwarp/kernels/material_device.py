@@ -56,6 +56,7 @@ class MaterialData:
     sin_rotation: float
     first_layer: int
     layers: int
+    veil: float  # what scratches that nothing passes through leave of light that passes through, on the average
 
 
 @wp.struct
@@ -104,3 +105,9 @@ def read_scalar(arrays: MaterialArrays, constant: float, read: int, uv: wp.vec2d
 def clamp_color(c: wp.vec3) -> wp.vec3:
     """An albedo: each channel in [0, 1]."""
     return wp.vec3(wp.clamp(c[0], 0.0, 1.0), wp.clamp(c[1], 0.0, 1.0), wp.clamp(c[2], 0.0, 1.0))
+
+
+@wp.func
+def cut_out(m: MaterialData) -> bool:
+    """Whether opacity removes the surface, its specular reflection included."""
+    return m.presence == 1 or m.opacity_threshold > 0.0

@@ -5,10 +5,10 @@ from functools import lru_cache
 import warp as wp
 
 from ..optics.filters_device import filter_offset_blackman_harris, filter_offset_box, filter_offset_gaussian
-from ..optics.frames_device import to_local
+from ..optics.frames_device import Frame, to_local
 from ..optics.hash_device import pixel_seed
 from ..optics.sobol_device import sobol_2d
-from ..reflectance.base_device import base_albedo
+from ..reflectance.base_device import Base, base_albedo
 from .base_at_device import make_base_at
 from .bounce_device import make_bounce
 from .camera_device import CameraData, footprint_step, lens_point, orthographic_ray, perspective_ray
@@ -150,6 +150,30 @@ def make_kernel(key: KernelKey):
                     u_lobe = sobol_2d(index, pair, seed)
                     u_base = sobol_2d(index, pair + 1, seed)
                     u_more = sobol_2d(index, pair + 2, seed)
+                    frame = Frame()
+                    base = Base()
+                    step_x = wp.vec3(0.0, 0.0, 0.0)
+                    step_y = wp.vec3(0.0, 0.0, 0.0)
+                    if wp.static(key.opacity) or depth < window.max_depth:
+                        tangent = wp.vec3(0.0, 0.0, 0.0)
+                        if wp.static(key.directed):
+                            # other materials keep the samples that they have without any tangents
+                            if m.layers > 0 or m.alpha_x != m.alpha_y:
+                                tangent = interpolate_tangent(g, s)
+                        frame = frame_at(g, arrays, m, s, tangent, wo)
+                        # edges of the footprint in the triangle's plane
+                        step_x = camera.right * (camera.pixel_x * camera.footprint)
+                        step_y = camera.up * (-camera.pixel_y * camera.footprint)
+                        if wp.static(not key.orthographic):
+                            far = (traveled + (gone + s.t)) / wp.length(ray.raw)
+                            step_x = step_x * far
+                            step_y = step_y * far
+                        if depth > 0:
+                            step_y = frame.y * wp.length(step_y)
+                            step_x = frame.x * wp.length(step_x)
+                        step_x = footprint_step(step_x, direction, s.ng)
+                        step_y = footprint_step(step_y, direction, s.ng)
+                        base = base_at(g, arrays, m, s)
                     through = float(0.0)
                     passing = float(0.0)
                     if wp.static(key.opacity):
@@ -158,7 +182,9 @@ def make_kernel(key: KernelKey):
                     straight = wp.vec3(1.0, 1.0, 1.0)
                     if wp.static(key.opacity):
                         if through > 0.0:
-                            straight = through * pass_through(m, base_at(g, arrays, m, s), s, wo)
+                            straight = through * pass_through(
+                                g, scratches, m, base, s, frame, wo, step_x, step_y, u_lobe, u_more
+                            )
                             passing = pass_probability(m, through, straight)
                     if wp.static(key.opacity) and sobol_2d(index, pair + 3, seed)[0] < passing:
                         throughput = wp.cw_mul(throughput, straight / passing)
@@ -174,25 +200,6 @@ def make_kernel(key: KernelKey):
                         glowing = glow(arrays, lights, m, s, origin, direction, gone + s.t, lobe, pdf, phi, depth)
                         found += wp.cw_mul(throughput, glowing)
                         if depth < window.max_depth:
-                            tangent = wp.vec3(0.0, 0.0, 0.0)
-                            if wp.static(key.directed):
-                                # other materials keep the samples that they have without any tangents
-                                if m.layers > 0 or m.alpha_x != m.alpha_y:
-                                    tangent = interpolate_tangent(g, s)
-                            frame = frame_at(g, arrays, m, s, tangent, wo)
-                            base = base_at(g, arrays, m, s)
-                            # edges of the footprint in the triangle's plane
-                            step_x = camera.right * (camera.pixel_x * camera.footprint)
-                            step_y = camera.up * (-camera.pixel_y * camera.footprint)
-                            if wp.static(not key.orthographic):
-                                far = traveled / wp.length(ray.raw)
-                                step_x = step_x * far
-                                step_y = step_y * far
-                            if depth > 0:
-                                step_y = frame.y * wp.length(step_y)
-                                step_x = frame.x * wp.length(step_x)
-                            step_x = footprint_step(step_x, direction, s.ng)
-                            step_y = footprint_step(step_y, direction, s.ng)
                             lobe = choose(
                                 g,
                                 scratches,
@@ -216,6 +223,7 @@ def make_kernel(key: KernelKey):
                                 g,
                                 arrays,
                                 scratches.tables,
+                                scratches.responses,
                                 lights,
                                 p,
                                 s.ng,
@@ -227,7 +235,7 @@ def make_kernel(key: KernelKey):
                             )
                             lit = wp.cw_mul(throughput, wp.vec3(received[0], received[1], received[2]))
                             rays += int(received[3])
-                            out = scatter(scratches.tables, lobe, s, u_base, u_more[1])
+                            out = scatter(scratches.tables, scratches.responses, lobe, s, u_base, u_more[1])
                             step = wp.cw_mul(throughput, out.weight)
                             lobe.diffuse_share = out.diffuse_share
                             if depth == 0:

@@ -4,6 +4,7 @@ import warp as wp
 
 from ..lights.light_device import Light, LightArrays
 from ..reflectance.profile_table_device import TableArrays
+from ..reflectance.responses.response_device import ResponseArrays
 from ..scratches.curves_device import SegmentArrays
 from ..scratches.layer_device import LayerData
 
@@ -22,8 +23,9 @@ class LightSet:
 
 @wp.struct
 class ScratchSet:
-    """All sublayers, the segments of explicit ones, and the profile tables they reflect by."""
+    """All sublayers, the segments of explicit ones, and the profile tables and responses they reflect by."""
 
     layers: wp.array(dtype=LayerData)
     segments: SegmentArrays
     tables: TableArrays
+    responses: ResponseArrays

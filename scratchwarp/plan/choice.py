@@ -31,6 +31,7 @@ class TablePlan:
         theta_model: how the table varies along the cone, the cheapest that is accurate enough; error: its largest
             error of an albedo.
         users: the layers that share it.
+        source: traced, or facets for a table of the profile's facets and their masking alone.
     """
 
     key: tuple[Any, ...]
@@ -42,17 +43,36 @@ class TablePlan:
     rays: int = 128
     theta_model: str = "gamma"
     error: float = 0.0
+    source: str = "traced"
+
+
+@dataclass(frozen=True, eq=False)
+class ResponsePlan:
+    """One response over solid angle: a key of ``reflectance.responses.RESPONSES``, the values that its ``pack`` takes,
+    the ``optics`` reflector of its facets (None: a mirror, or none needed), and the layers or materials that use it."""
+
+    name: str
+    values: Any
+    fresnel: Any
+    users: tuple[str, ...]
 
 
 @dataclass(frozen=True, eq=False)
 class LayerPlan:
-    """A sublayer to render, its table (-1: a diffuse scratch), and whether the base's diffuse term shows through."""
+    """A sublayer to render, its table or response (neither: a diffuse scratch), and whether the base's diffuse term
+    shows through."""
 
     sublayer: Any
     table: int
     keeps_diffuse: bool
     weight: float
     diffuse: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    response: int = -1
+
+    @property
+    def lambert(self) -> bool:
+        """Whether the scratch is a Lambert surface: neither a table nor a response."""
+        return self.table < 0 and self.response < 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +83,7 @@ class EffectPlan:
         effects: name -> EffectChoice, in the order of ``explain``.
         settings: every value decided. size: (width, height) of the whole image in pixels.
         window: (x0, x1, y0, y1) of the pixels rendered, the maxima exclusive.
-        layers: for each material of the scene its sublayers. tables: what to simulate.
+        layers: for each material of the scene its sublayers. tables: what to simulate. responses: the others.
         warnings: what cannot be honoured. seconds: how long planning took.
     """
 
@@ -76,6 +96,7 @@ class EffectPlan:
     warnings: tuple[str, ...] = ()
     seconds: float = 0.0
     numbers: Mapping[str, str] = field(default_factory=dict)
+    responses: tuple[ResponsePlan, ...] = ()
 
     def __post_init__(self) -> None:
         put(self, effects=MappingProxyType(dict(self.effects)), numbers=MappingProxyType(dict(self.numbers)))

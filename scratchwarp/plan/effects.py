@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 
 from ..lights.registry import MODELS
+from ..reflectance.responses import RESPONSES
 from ..scene import Material, PreviewSurface, Scene, ScratchSurface, Settings, TextureInput
 from ..scratches import KINDS
-from .choice import LayerPlan, TablePlan
+from .choice import LayerPlan, ResponsePlan, TablePlan
 from .occlusion import can_occlude
 
 Answer = tuple[bool, str, tuple[str, ...]]
@@ -27,6 +28,7 @@ class Facts:
     materials: tuple[Material, ...]
     layers: tuple[tuple[LayerPlan, ...], ...]
     tables: tuple[TablePlan, ...]
+    responses: tuple[ResponsePlan, ...] = ()
 
     @property
     def every(self) -> list[LayerPlan]:
@@ -73,8 +75,16 @@ def _fresnel(f: Facts) -> Answer:
 
 
 def _diffuse_scratches(f: Facts) -> Answer:
-    found = [p.sublayer.layer.label for p in f.every if p.table < 0]
+    found = [p.sublayer.layer.label for p in f.every if p.lambert]
     return _answer(found, "Lambert scratches", "no Lambert scratch")
+
+
+def _response(name: str) -> Callable[[Facts], Answer]:
+    def rule(f: Facts) -> Answer:
+        found = [user for r in f.responses if r.name == name for user in r.users]
+        return _answer(found, f"reflect by {name} in place of a table", f"nothing reflects by {name}")
+
+    return rule
 
 
 def _sum_coverage(f: Facts) -> Answer:
@@ -161,6 +171,7 @@ EFFECTS: dict[str, Callable[[Facts], Answer]] = {
     "scratches.interreflection": _interreflection,
     "scratches.fresnel": _fresnel,
     "scratches.diffuse": _diffuse_scratches,
+    **{response.effect: _response(name) for name, response in RESPONSES.items()},
     "scratches.sumCoverage": _sum_coverage,
     "diffraction": _diffraction,
     "grooves": _grooves,

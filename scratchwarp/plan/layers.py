@@ -11,7 +11,8 @@ from .. import optics
 from ..optics import metals
 from ..scene import Layer, Material, PreviewSurface, Scene, ScratchSurface, TextureInput
 from ..scratches.expand import sublayers
-from .choice import LayerPlan, TablePlan
+from . import models
+from .choice import LayerPlan, ResponsePlan, TablePlan
 from .profiles import cross_section
 from .theta import theta_model
 
@@ -103,7 +104,9 @@ class _Tables:
         sized, p = _sized(self._scene, layer, curves), layer.profile
         aspect = sized.depth / sized.width
         points = b"" if p.points is None else p.points.tobytes()
-        key = (p.shape, points, p.rim, p.rim_width, p.periodic, p.parameters, round(aspect, 12), fresnel)
+        variant = layer.model if layer.model in models.TABLE_MODELS else ""
+        outline = (p.shape, points, p.rim, p.rim_width, p.periodic, p.parameters)
+        key = (*outline, round(aspect, 12), fresnel, variant)
         known = self._plans.get(key)
         if known is None:
             profile = cross_section(p, sized)
@@ -111,6 +114,7 @@ class _Tables:
             model, off = self._chosen.get(key) or theta_model(profile, reflecting, self._max_error)
             flat = p.rim == 0.0 and (p.shape == "flat" or aspect == 0.0)
             known = TablePlan(key, profile, reflecting, 1 if flat else 2000, (), theta_model=model, error=off)
+            known = models.changed(known, layer.model)
         if layer.label not in known.users:
             known = replace(known, users=(*known.users, layer.label))
         self._plans[key] = known
@@ -138,25 +142,32 @@ def _complaints(material: Material, layer: Layer, fresnel: Any) -> list[str]:
 
 
 def plan_layers(
-    scene: Scene, allowed: Callable[[str], bool], max_error: float | None = None, known: tuple[TablePlan, ...] = ()
-) -> tuple[tuple[tuple[LayerPlan, ...], ...], tuple[TablePlan, ...], tuple[str, ...]]:
-    """(sublayers of each material, tables to simulate, warnings).
+    scene: Scene,
+    allowed: Callable[[str], bool],
+    max_error: float | None = None,
+    known: tuple[TablePlan, ...] = (),
+    model: str | None = None,
+) -> tuple[tuple[tuple[LayerPlan, ...], ...], tuple[TablePlan, ...], tuple[ResponsePlan, ...], tuple[str, ...]]:
+    """(sublayers of each material, tables to simulate, responses over solid angle, warnings).
 
     ``allowed(distribution)``: whether it may be on; ``max_error``: of a table's albedos, None for the default;
-    ``known``: tables planned earlier for the same ``max_error``.
+    ``known``: tables planned earlier for the same ``max_error``; ``model``: in place of every layer's own.
     """
     tables = _Tables(scene, max_error, known)
+    responses = models.Responses()
     warnings: dict[str, None] = {}
     every: list[tuple[LayerPlan, ...]] = []
     used = {m for i in scene.instances for m in i.materials}
     for number, material in enumerate(scene.materials):
         own: list[LayerPlan] = []
-        for layer in material.layers if number in used else ():
+        for authored in material.layers if number in used else ():
+            layer = replace(authored, model=model) if model else authored
             subs = [s for s in sublayers(layer) if allowed(s.distribution)]
             try:
                 fresnel, keeps = reflector(scene, material, layer)
             except ValueError as error:
                 raise ValueError(f"{layer.label}: {error}") from None
+            fresnel, keeps = models.reflector_of(layer.model, fresnel, keeps)
             warnings |= dict.fromkeys(_complaints(material, layer, fresnel))
             if fresnel is None:
                 color = layer.diffuse_color
@@ -165,6 +176,9 @@ def plan_layers(
                 own += [LayerPlan(s, -1, False, max(*color, 0.02), color) for s in subs]
             else:
                 weight = lobe_weight(fresnel)
-                own += [LayerPlan(s, tables.index(layer, s.curves, fresnel), keeps, weight) for s in subs]
+                for s in subs:
+                    answer = responses.index(layer, _sized(scene, layer, s.curves), fresnel)
+                    table = tables.index(layer, s.curves, fresnel) if answer < 0 else -1
+                    own.append(LayerPlan(s, table, keeps, weight, response=answer))
         every.append(tuple(own))
-    return tuple(every), tables.plans(), tuple(warnings)
+    return tuple(every), tables.plans(), responses.plans(), tuple(warnings)

@@ -4,8 +4,9 @@ import time
 from dataclasses import replace
 
 from ..lights.registry import MODELS
+from ..reflectance.responses import RESPONSES
 from ..scene import Scene, Settings
-from .choice import EffectChoice, EffectPlan, LayerPlan, TablePlan
+from .choice import EffectChoice, EffectPlan, LayerPlan, ResponsePlan, TablePlan
 from .cost import shares
 from .effects import EFFECTS, Facts
 from .layers import plan_layers
@@ -33,11 +34,13 @@ def make_plan(scene: Scene, settings: Settings | None = None, earlier: EffectPla
 
     try:
         known = earlier.tables if earlier is not None and earlier.settings.max_error == decided.max_error else ()
-        layers, tables, warnings = plan_layers(scene, allowed, decided.max_error, known)
+        layers, tables, responses, warnings = plan_layers(
+            scene, allowed, decided.max_error, known, decided.model
+        )
     except ValueError as error:
         raise ValueError(f"{scene.path}: {error}") from None
     used = sorted({m for instance in scene.instances for m in instance.materials})
-    facts = Facts(scene, decided, tuple(scene.materials[i] for i in used), layers, tables)
+    facts = Facts(scene, decided, tuple(scene.materials[i] for i in used), layers, tables, responses)
     effects = {}
     for name, rule in EFFECTS.items():
         enabled, reason, prims = rule(facts)
@@ -46,7 +49,7 @@ def make_plan(scene: Scene, settings: Settings | None = None, earlier: EffectPla
             enabled = forced[name]
         effects[name] = EffectChoice(enabled, reason, prims, name in forced)
     counts = {f"lights.{m.name}": sum(type(x) is r for x in scene.lights) for r, m in MODELS.items()}
-    layers, tables = _without(effects, layers, tables)
+    layers, tables = _without(effects, layers, tables, responses)
     by_cost = shares(effects, layers, counts, decided.max_depth or 1)
     effects = {n: replace(c, share=by_cost.get(n, 0.0)) for n, c in effects.items()}
     warnings += tuple(
@@ -78,15 +81,16 @@ def make_plan(scene: Scene, settings: Settings | None = None, earlier: EffectPla
         tables=tables,
         warnings=warnings,
         numbers=numbers,
+        responses=responses,
         seconds=time.perf_counter() - start,
     )
 
 
 def _without(
-    effects: dict[str, EffectChoice], layers: Layers, tables: tuple[TablePlan, ...]
+    effects: dict[str, EffectChoice], layers: Layers, tables: tuple[TablePlan, ...], responses: tuple[ResponsePlan, ...]
 ) -> tuple[Layers, tuple[TablePlan, ...]]:
     """What is left of layers and tables when effects of scratches are forced off: one bounce, mirrors, no scratches
-    that reflect by a table, or none that are Lambert surfaces."""
+    that reflect by a table or a response, or none that are Lambert surfaces."""
     off = {name for name, choice in effects.items() if choice.forced and not choice.enabled}
     if "scratches.table" in off:
         tables = ()
@@ -94,5 +98,10 @@ def _without(
         tables = tuple(replace(t, max_bounces=1) for t in tables)
     if "scratches.fresnel" in off:
         tables = tuple(replace(t, fresnel=None) for t in tables)
-    kept = {True: "scratches.table" not in off, False: "scratches.diffuse" not in off}
-    return tuple(tuple(p for p in own if kept[p.table >= 0]) for own in layers), tables
+
+    def kept(p: LayerPlan) -> bool:
+        if p.response >= 0:
+            return RESPONSES[responses[p.response].name].effect not in off
+        return ("scratches.diffuse" if p.lambert else "scratches.table") not in off
+
+    return tuple(tuple(p for p in own if kept(p)) for own in layers), tables

@@ -5,7 +5,8 @@ Files, the way a table is made: ``profile`` the record, ``shapes`` named ones, `
 Fresnel as rows, ``energy_kernels`` and ``polarised_kernels`` what paths carry and where it lands; ``paths`` the host
 of both passes, ``launch`` threads; ``tracing`` columns and symmetries, ``balance`` (and its kernels) whole tables,
 ``simulation`` the calls; ``theta`` models along the scratch, ``theta_choice`` their errors; ``table`` the result,
-``table_device`` and ``table_kernels`` its sampling; ``drawing`` a picture of it; ``single_rays`` rays to look at;
+``table_device`` and ``table_kernels`` its sampling; ``facet_table`` one of facets and masking alone; ``drawing`` a
+picture of it; ``single_rays`` rays to look at;
 ``cache`` tables on disk.
 """
 
@@ -14,6 +15,7 @@ from scratchwarp.profiles.cache import read_table as read_table
 from scratchwarp.profiles.cache import store as store
 from scratchwarp.profiles.cache import write_table as write_table
 from scratchwarp.profiles.drawing import picture as picture
+from scratchwarp.profiles.facet_table import facet_table as facet_table
 from scratchwarp.profiles.profile import Profile as Profile
 from scratchwarp.profiles.shapes import shape as shape
 from scratchwarp.profiles.shapes import shape_names as shape_names

@@ -9,6 +9,7 @@ so), and t = mu (1 + s) / (mu + s) moves them away, which leaves a function of t
   cannot show a dip, and exact metals have one: r <= 0 in most cells of iron.
 - "quadratic": the parabola in t (s = 0.3) through theta = 0, 79.2 degrees and 90.
 - "table": straight lines in t (s = 0.15) between 16 equal steps: two look-ups for each value.
+- "full": the same between 32 steps.
 - "exact": the polynomial in t (s = 0.2) through 13 Chebyshev-Lobatto nodes, below the sampling error.
 
 Measured errors are in docs/profiles.md; ``choose_theta_model`` measures them for a profile and reflector.
@@ -71,12 +72,14 @@ _MODELS = {
 }
 # from the cheapest to the dearest
 THETA_MODELS = ("gamma", *_MODELS)
+# "table" with twice the steps: a reference in renders, never chosen by itself
+_MODELS["full"] = ThetaModel(0.15, tuple(np.arange(33) / 32.0), "lines")
 
 
 def theta_model(name: str) -> ThetaModel | None:
     """The model of that name; None for "gamma", which is a formula of its own. ValueError on another name."""
-    if name not in THETA_MODELS:
-        raise ValueError(f"theta_model must be one of {THETA_MODELS}, got {name!r}")
+    if name not in (*THETA_MODELS, "full"):
+        raise ValueError(f"theta_model must be one of {(*THETA_MODELS, 'full')}, got {name!r}")
     return _MODELS.get(name)
 
 

@@ -27,6 +27,8 @@ CHECKPOINT_EVERY = 10.0
 
 def simulate_table(table: TablePlan, threads: int) -> profiles.Table:
     """One of the plan's profile tables."""
+    if table.source == "facets":
+        return profiles.facet_table(table.profile, table.fresnel, table.resolution, table.theta_model)
     return profiles.simulate(
         table.profile,
         resolution=table.resolution,
@@ -170,6 +172,7 @@ def render_digest(scene: Scene, plan: EffectPlan, built: Assembled) -> str:
         tiles(x1 - x0, y1 - y0, settings.tile)[0],
         plan.layers,
         plan.tables,
+        plan.responses,
         built.key,
         settings.filter_width,
         settings.max_depth,

@@ -8,7 +8,18 @@ import numpy as np
 from .checks import freeze, in_range, one_of, put
 
 SHAPES = ("flat", "vGroove", "rectangle", "trapezoid", "round", "quartic", "gaussian", "sine", "points")
-MODELS = ("auto", "table", "diffraction", "groove", "normalMap")
+MODELS = (
+    "auto",
+    "table",
+    "diffraction",
+    "groove",
+    "normalMap",
+    "ashikhminShirley",
+    "tabulatedNdf",
+    "singleBounce",
+    "mirror",
+    "fullTable",
+)
 DISTRIBUTIONS = ("worley", "random", "linear", "concentric", "spiral", "crosshatch", "curves")
 SPACES = ("surface", "uv")
 MATERIALS = ("inherit", "conductor", "dielectric", "diffuse")

@@ -6,6 +6,7 @@ from types import MappingProxyType
 from typing import Any
 
 from .checks import in_range, one_of, put
+from .layer import MODELS
 
 QUALITIES = ("draft", "preview", "final", "reference")
 INTEGRATORS = ("direct", "path")
@@ -27,6 +28,7 @@ class Settings:
         tile: edge of a square tile in pixels.
         filter: box, gaussian or blackmanHarris [blackmanHarris]; filter_width: full width in pixels.
         effects: name -> True or False forces one effect of the plan on or off.
+        model: how light on scratches is computed, a token of ``scratch:layer:model`` in place of every layer's own.
     """
 
     width: int | None = None
@@ -43,6 +45,7 @@ class Settings:
     filter: str | None = None
     filter_width: float | None = None
     effects: Mapping[str, bool] = field(default_factory=dict)
+    model: str | None = None
 
     def __post_init__(self) -> None:
         limits = {"width": 65536, "height": 65536, "spp": 1 << 20, "threads": 4096, "max_depth": 1024, "tile": 4096}
@@ -60,6 +63,8 @@ class Settings:
             one_of("Settings", "integrator", self.integrator, INTEGRATORS)
         if self.filter is not None:
             one_of("Settings", "filter", self.filter, ("box", "gaussian", "blackmanHarris"))
+        if self.model is not None:
+            one_of("Settings", "model", self.model, MODELS)
         if self.filter_width is not None:
             in_range("Settings", "filter_width", self.filter_width, 0.0, 64.0)
         if self.max_error is not None:

@@ -39,6 +39,7 @@ class LayerData:
     reach: float  # curves: how far from its box a segment's strip may lie
     curve_uv: int  # curves: 1 when segments lie in the uv square
     width_uv: int  # curves: 1 when half widths are fractions of it
+    response: int  # what it reflects by in place of a table, -1: nothing
 
 
 @wp.struct

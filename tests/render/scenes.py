@@ -6,6 +6,7 @@ import numpy as np
 
 import scratchwarp as sw
 from scratchwarp.plan.effects import EFFECTS
+from scratchwarp.reflectance.responses import RESPONSES
 from scratchwarp.scene import (
     Camera,
     DomeLight,
@@ -21,12 +22,13 @@ from scratchwarp.scene import (
 
 # Code for everything, so that the tests of this folder share a few kernels. ``test_effects`` shows that an effect which
 # nothing calls for changes no bit. Left out: what changes how lights are sampled or
-# layers combined, and what needs data of its own.
+# layers combined, responses in place of tables, and what needs data of its own.
+RESPONDING = {response.effect for response in RESPONSES.values()}
 EVERYTHING = {
     name: True
     for name in EFFECTS
     if name.split(".")[0] in ("lights", "base", "scratches", "shadows", "lens", "indirect")
-    and name not in ("lights.multipliers", "scratches.curves", "scratches.sumCoverage")
+    and name not in ("lights.multipliers", "scratches.curves", "scratches.sumCoverage", *RESPONDING)
 }
 
 

@@ -146,3 +146,13 @@ def test_light_between_bodies_vanishes():
     noise = np.sqrt(film["variance"].sum()) / film["variance"].size
     assert noise < 2e-3 and abs(film["color"].mean() - 1.0) < 1e-3 + 4 * noise
     assert abs(scenes.shoot(world, spp=16)["color"].mean() - 1.0) > 0.05
+
+
+@pytest.mark.parametrize("opacity", [0.0, 0.3])
+def test_mirror_scratches_on_glass_vanish(opacity):
+    """Nothing passes through them, so that the pane sends on what they leave uncovered."""
+    surface = PreviewSurface(diffuse_color=(1.0, 1.0, 1.0), roughness=0.0, ior=1.8, opacity=opacity)
+    film = look(scenes.plane(1.8), [scenes.scratched(surface, fresnel="mirror")], spp=256)
+    deviations, _ = excess(film)
+    assert deviations.max() < 6.0 and film["scratches"].mean() > 0.1
+    assert abs(film["color"].mean() - 1.0) < 1e-3

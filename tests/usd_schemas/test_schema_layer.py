@@ -3,11 +3,12 @@
 import pytest
 from pxr import Usd, UsdGeom
 
+MODELS = "auto table diffraction groove normalMap ashikhminShirley tabulatedNdf singleBounce mirror fullTable"
 METALS = "custom aluminium gold copper silver iron brass"
 ATTRIBUTES = [
     ("enabled", "bool", True, None, None, None, None),
     ("order", "int", 0, None, None, None, "none"),
-    ("model", "token", "auto", None, None, "auto table diffraction groove normalMap", None),
+    ("model", "token", "auto", None, None, MODELS, None),
     ("distribution", "token", "worley", None, None, "worley random linear concentric spiral crosshatch curves", None),
     ("space", "token", "surface", None, None, "surface uv", None),
     ("width", "float", 10.0, 0, None, None, "micrometer"),
@@ -40,6 +41,11 @@ ATTRIBUTES = [
     ("orientationEncoding", "token", "vector", None, None, "angle vector", None),
     ("orientationPrimvar", "token", "", None, None, None, None),
     ("normalTexture", "asset", None, None, None, None, None),
+    ("normalRepeats", "float2", (1, 1), None, None, None, "none"),
+    ("normalStrength", "float", 1.0, 0, None, None, "none"),
+    ("normalDeformation", "token", "linear", None, None, "linear sqrt none", None),
+    ("facets", "token", "ashikhminShirley", None, None, "ashikhminShirley ward beckmann ggx", None),
+    ("facetRoughness", "float2", (0.3, 0.1), None, None, None, "none"),
 ]
 RELATIONSHIPS = {"profile", "curves"}
 
