@@ -11,8 +11,8 @@ from .response_device import NODES, ResponseArrays, ResponseData
 
 
 def pack(plans: Sequence[Any], device: str = "cpu") -> ResponseArrays:
-    """Device data of responses. Each has a ``name`` of ``RESPONSES``, ``values`` for its kind's ``pack`` and ``fresnel``,
-    a reflector of ``optics`` or None, which reflects everything."""
+    """Device data of responses. Each has a ``name`` of ``RESPONSES``, ``values`` for its kind's ``pack`` and
+    ``fresnel``, a reflector of ``optics`` or None, which reflects everything."""
     names = [p.name for p in plans]
     arrays: Any = ResponseArrays()
     cosines = np.linspace(0.0, 1.0, NODES) ** 2
