@@ -11,11 +11,13 @@ Files:
     output      RenderProduct, RenderOptions: what the stage asks the renderer for
     settings    Settings: what the user asks for
     world       Scene
+    control     Control: an attribute that can be turned
     digest      a hash of records and arrays
     errors      StageError: the input is at fault
 """
 
 from .camera import Camera
+from .control import Control
 from .errors import StageError
 from .geometry import Instance, Mesh
 from .layer import Curves, Layer, Profile, Wave
@@ -38,6 +40,7 @@ from .world import Scene
 
 __all__ = [
     "Camera",
+    "Control",
     "Curves",
     "CylinderLight",
     "DiskLight",

@@ -18,6 +18,7 @@ Files, from the outside in:
     illuminate      all lights; lights says which function reads which type: light_near, light_far, light_shape; light
                     is what they share
     color           colours in linear Rec.709
+    live            LiveStage: a stage that is edited while it is looked at; controls says what of it can be turned
     complain        what an author should hear of the scene as a whole
     validation      validate(path) -> findings; validation_framework hands the rules (validation_rule) to OpenUSD's own
                     validators: validation_names, _values, _links, _materials, _profiles, _curves
@@ -25,8 +26,9 @@ Files, from the outside in:
 
 from scratchwarp.usd_schemas import register
 
+from .live import LiveStage
 from .read import PURPOSES, read
 
 register()
 
-__all__ = ["PURPOSES", "read"]
+__all__ = ["PURPOSES", "LiveStage", "read"]

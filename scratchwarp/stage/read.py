@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable, Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -59,27 +59,11 @@ def read(
     """
     started = time.perf_counter()
     warnings = Warnings()
-    unknown = sorted({*purposes} - {*ALL_PURPOSES})
-    if unknown:
-        raise StageError(f"purposes name {', '.join(unknown)}; known are {', '.join(ALL_PURPOSES)}")
-    if frame is not None and not np.isfinite(frame):
-        raise StageError(f"frame is {frame}; expected a time code")
-    if frame is not None and default_time:
-        raise StageError(f"frame is {frame} and default_time is set; give one of them")
-    unsampled = Usd.TimeCode.Default() if default_time else Usd.TimeCode.EarliestTime()
     with gathered_diagnostics(path, warnings), usd_errors(path):
-        stage = open_stage(path, session_layer, mask, [k for k in (camera, render_settings) if k])
-        reading = Reading(
-            stage=stage,
-            time=unsampled if frame is None else Usd.TimeCode(float(frame)),
-            path=str(path),
-            metres=metres_per_unit(path, stage),
-            warn=warnings,
-            load_texture=load_texture,
+        reading, settings = opened(
+            path, frame, purposes, load_texture, session_layer, mask, render_settings, default_time, camera, warnings
         )
-        settings = read_settings(reading, render_settings)
-        reading = replace(reading, purposes=_purposes(tuple(purposes), settings))
-        scene = _scene(reading, settings, camera)
+        scene, _ = read_scene(reading, settings, camera)
     scene = replace(
         scene,
         time=None if frame is None else float(frame),
@@ -92,17 +76,78 @@ def read(
     return scene
 
 
-def _scene(reading: Reading, settings: StageSettings, camera: str | None) -> Scene:
-    """The scene, but for what is known only at the end."""
+@dataclass(frozen=True, eq=False)
+class Kept:
+    """What is read of a stage once, however often its layers, lights and camera are read: meshes in object space with
+    their placements, and decoded images."""
+
+    geometry: Geometry
+    textures: Textures
+
+
+def opened(
+    path: str | Path,
+    frame: float | None = None,
+    purposes: Iterable[str] = PURPOSES,
+    load_texture: TextureLoader | None = None,
+    session_layer: str | Path | None = None,
+    mask: str | Iterable[str] | None = None,
+    render_settings: str | None = None,
+    default_time: bool = False,
+    camera: str | None = None,
+    warnings: Warnings | None = None,
+) -> tuple[Reading, StageSettings]:
+    """Open a stage for reading; arguments and errors as those of ``read``."""
+    unknown = sorted({*purposes} - {*ALL_PURPOSES})
+    if unknown:
+        raise StageError(f"purposes name {', '.join(unknown)}; known are {', '.join(ALL_PURPOSES)}")
+    if frame is not None and not np.isfinite(frame):
+        raise StageError(f"frame is {frame}; expected a time code")
+    if frame is not None and default_time:
+        raise StageError(f"frame is {frame} and default_time is set; give one of them")
+    unsampled = Usd.TimeCode.Default() if default_time else Usd.TimeCode.EarliestTime()
+    stage = open_stage(path, session_layer, mask, [k for k in (camera, render_settings) if k])
+    reading = Reading(
+        stage=stage,
+        time=unsampled if frame is None else Usd.TimeCode(float(frame)),
+        path=str(path),
+        metres=metres_per_unit(path, stage),
+        warn=warnings or Warnings(),
+        load_texture=load_texture,
+    )
+    settings = read_settings(reading, render_settings)
+    return replace(reading, purposes=_purposes(tuple(purposes), settings)), settings
+
+
+def read_scene(
+    reading: Reading,
+    settings: StageSettings,
+    camera: str | None,
+    kept: Kept | None = None,
+    origin: np.ndarray | None = None,
+) -> tuple[Scene, Kept]:
+    """(the scene, but for what is known only at the end; what need not be read again).
+
+    ``kept``: of an earlier reading, where no mesh has changed or moved since. ``origin``: the scene's [m], where it
+    shall not be the camera's position.
+    """
     places = placed_prims(reading)
-    geometry = read_geometry(reading, places)
-    view, origin = _camera(reading, find_camera(reading, camera, settings.camera), geometry, settings)
-    textures, curves = Textures(reading), CurveSets(reading, origin)
+    if kept is None:
+        kept = Kept(read_geometry(reading, places), Textures(reading))
+    geometry, textures = Geometry(list(kept.geometry.meshes), kept.geometry.placements), kept.textures
+    view, eye = _camera(reading, find_camera(reading, camera, settings.camera), geometry, settings)
+    if origin is None:
+        origin = eye
+    else:
+        transform = np.array(view.transform)
+        transform[:3, 3] += eye - origin
+        view = replace(view, transform=transform)
+    curves = CurveSets(reading, origin)
     materials = Materials(reading, textures, curves)
     instances = place_instances(reading, geometry, origin, materials, settings.binding_purposes)
     complain(reading, geometry.meshes, instances, materials.records)
     lit = read_lights(reading, places, origin, geometry.meshes, instances, materials, textures)
-    return Scene(
+    scene = Scene(
         path=reading.path,
         meshes=tuple(lit.meshes),
         instances=tuple(lit.instances),
@@ -115,6 +160,7 @@ def _scene(reading: Reading, settings: StageSettings, camera: str | None) -> Sce
         up=_up(reading.stage),
         options=settings.options,
     )
+    return scene, kept
 
 
 def _purposes(asked: tuple[str, ...], settings: StageSettings) -> tuple[str, ...]:
