@@ -162,7 +162,9 @@ def assemble(
     light_set.links = wp.array(links, dtype=wp.uint8, device=device)
     light_set.arrays = packed.arrays
     scratch_set.layers, scratch_set.segments = stuff.layers, strokes
-    scratch_set.tables = parts.part("tables", tuple(tables), lambda: profile_table.pack(tables, device))
+    scratch_set.tables = parts.part(
+        "tables", tuple(tables), lambda: profile_table.pack(tables, device, parts.last("tables"))
+    )
     used = plan.responses if key.responses else ()
     scratch_set.responses = parts.part("responses", (digest(used),), lambda: pack_responses(used, device))
     inputs = (camera_data(scene, plan), shape.arrays, stuff.arrays, scratch_set, light_set)

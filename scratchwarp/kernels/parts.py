@@ -14,7 +14,7 @@ class Parts:
     which compare by identity.
 
     Attributes:
-        seconds: name -> seconds of each part that was built since ``forget_times``.
+        seconds: name -> seconds of each part that was built since this was emptied.
     """
 
     def __init__(self) -> None:
@@ -32,6 +32,6 @@ class Parts:
         self._built[name] = (sources, made)
         return made
 
-    def forget_times(self) -> None:
-        """Empty ``seconds``; what is built stays."""
-        self.seconds.clear()
+    def last(self, name: str) -> tuple[tuple[Any, ...], Any] | None:
+        """(sources, what was built from them) of a part; None before it is built."""
+        return self._built.get(name)

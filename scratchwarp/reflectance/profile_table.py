@@ -1,7 +1,7 @@
 """Pack simulated profile tables for the device."""
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import warp as wp
@@ -45,8 +45,41 @@ def _rows(table: Any, scale: np.ndarray) -> tuple[np.ndarray, int, float]:
     return np.stack([mirror, *slices], axis=1), steps, model.shift
 
 
-def pack(tables: Sequence[Any], device: str = "cpu") -> TableArrays:
-    """Device arrays of ``profiles`` tables, all of one resolution, each of a theta model in ``RENDERED``."""
+class _Packed(NamedTuple):
+    """One table as the device has it; ``rows`` None for a mirror."""
+
+    mirror: np.ndarray
+    cdf: np.ndarray
+    rows: np.ndarray | None
+    steps: int
+    shift: float
+
+
+def _packed(table: Any) -> _Packed:
+    raw = np.asarray(table.mirror, np.float64)
+    weights = np.asarray(table.weights, np.float64)
+    unit = rows_to_unit_energy(raw, weights)
+    sums = np.cumsum(unit * weights, axis=1)
+    cdf = np.zeros((len(raw), len(raw) + 1), np.float32)
+    cdf[:, 1:] = sums / sums[:, -1:]
+    unit = rows_to_unit_energy(raw, weights, np.asarray(table.lost, np.float64))
+    if table.normal is None:
+        return _Packed(unit.astype(np.float32), cdf, None, 0, 0.0)
+    # a cell's albedo is its slice over its mirror: keep that ratio under the row scaling
+    scale = np.divide(unit, raw, out=np.ones_like(raw), where=raw > 0).astype(np.float32)
+    made, steps, shift = _rows(table, scale)
+    return _Packed(unit.astype(np.float32), cdf, made.astype(np.float32), steps, shift)
+
+
+def pack(
+    tables: Sequence[Any], device: str = "cpu", earlier: tuple[Sequence[Any], TableArrays] | None = None
+) -> TableArrays:
+    """Device arrays of ``profiles`` tables, all of one resolution, each of a theta model in ``RENDERED``.
+
+    ``earlier``: tables packed before and their arrays, which are written over where only some tables are others.
+    """
+    if earlier is not None and wp.get_device(device).is_cpu and _replaced(tables, *earlier):
+        return earlier[1]
     packed = TableArrays()
     bins = len(tables[0].weights) if tables else 1
     packed.bins = bins
@@ -56,19 +89,11 @@ def pack(tables: Sequence[Any], device: str = "cpu") -> TableArrays:
     first, steps, shift = np.full(count, -1, np.int32), np.zeros(count, np.int32), np.zeros(count, np.float32)
     rows: list[np.ndarray] = []
     for k, table in enumerate(tables):
-        raw = np.asarray(table.mirror, np.float64)
-        weights = np.asarray(table.weights, np.float64)
-        unit = rows_to_unit_energy(raw, weights)
-        sums = np.cumsum(unit * weights, axis=1)
-        cdf[k, :, 1:] = sums / sums[:, -1:]
-        unit = rows_to_unit_energy(raw, weights, np.asarray(table.lost, np.float64))
-        mirror[k] = unit
-        if table.normal is not None:
-            # a cell's albedo is its slice over its mirror: keep that ratio under the row scaling
-            scale = np.divide(unit, raw, out=np.ones_like(raw), where=raw > 0).astype(np.float32)
-            made, steps[k], shift[k] = _rows(table, scale)
-            first[k] = sum(r.shape[1] for r in rows)
-            rows.append(made.astype(np.float32))
+        one = _packed(table)
+        mirror[k], cdf[k] = one.mirror, one.cdf
+        if one.rows is not None:
+            first[k], steps[k], shift[k] = sum(r.shape[1] for r in rows), one.steps, one.shift
+            rows.append(one.rows)
     every = np.concatenate(rows, axis=1) if rows else np.zeros((1, 1, 1, 3), np.float32)
     packed.slices = wp.array(every, dtype=wp.vec3, device=device)
     packed.mirror = wp.array(mirror, dtype=float, device=device)
@@ -77,3 +102,19 @@ def pack(tables: Sequence[Any], device: str = "cpu") -> TableArrays:
     packed.steps = wp.array(steps, dtype=int, device=device)
     packed.shift = wp.array(shift, dtype=float, device=device)
     return packed
+
+
+def _replaced(tables: Sequence[Any], old: Sequence[Any], packed: TableArrays) -> bool:
+    """Put other tables in the place of ``old`` ones; False, with nothing done, where they do not fit."""
+    if len(tables) != len(old) or not tables or any(len(t.weights) != packed.bins for t in tables):
+        return False
+    others = {k: _packed(t) for k, t in enumerate(tables) if t is not old[k]}
+    first, steps = packed.first.numpy(), packed.steps.numpy()
+    if any((one.rows is None) != (first[k] < 0) or one.steps != steps[k] for k, one in others.items()):
+        return False
+    mirror, cdf, slices, shift = (a.numpy() for a in (packed.mirror, packed.cdf, packed.slices, packed.shift))
+    for k, one in others.items():
+        mirror[k], cdf[k], shift[k] = one.mirror, one.cdf, one.shift
+        if one.rows is not None:
+            slices[:, first[k] : first[k] + one.rows.shape[1]] = one.rows
+    return True

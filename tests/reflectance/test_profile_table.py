@@ -84,3 +84,17 @@ def test_samples_follow_their_density(row):
 def test_a_model_without_equal_steps_is_refused():
     with pytest.raises(ValueError, match="exact"):
         profile_table.pack([simulated("exact", IRON)])
+
+
+def test_one_table_in_the_place_of_another():
+    """Arrays that are written over equal new ones; where a table does not fit, new ones are made."""
+    old = [simulated("gamma", None), simulated("quadratic", IRON), simulated("gamma", GLASS)]
+    fitting = [old[0], simulated("quadratic", GLASS), old[2]]
+    packed = profile_table.pack(old)
+    replaced = profile_table.pack(fitting, earlier=(old, packed))
+    assert replaced is packed
+    for tables, found in ((fitting, replaced), ([old[0], old[2], old[2]], None), (old[:2], None)):
+        found = found or profile_table.pack(tables, earlier=(fitting, packed))
+        fresh = profile_table.pack(tables)
+        for name in ("mirror", "cdf", "slices", "first", "steps", "shift"):
+            np.testing.assert_array_equal(getattr(found, name).numpy(), getattr(fresh, name).numpy(), err_msg=name)
