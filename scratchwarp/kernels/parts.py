@@ -35,3 +35,9 @@ class Parts:
     def last(self, name: str) -> tuple[tuple[Any, ...], Any] | None:
         """(sources, what was built from them) of a part; None before it is built."""
         return self._built.get(name)
+
+    def copy(self) -> "Parts":
+        """Another one that starts with what is built here."""
+        other = Parts()
+        other._built = dict(self._built)
+        return other

@@ -5,6 +5,7 @@ Files:
     tiles       tiles over threads
     launch      one kernel over tiles of one film
     session     Session: a scene that is changed while its image refines; steps are the ways it gets better
+    inspect     what made a pixel
     film        Film and its AOVs
     develop     sums -> AOVs and header
     checkpoint  finished tiles on disk

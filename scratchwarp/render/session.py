@@ -17,6 +17,7 @@ from ..scene import Scene, Settings
 from ..scene.digest import digest
 from . import develop
 from .film import Film
+from .inspect import PixelReport, inspect
 from .launch import SAMPLES_A_LAUNCH, SUMS, film_arrays, launcher, loaded
 from .renderer import render_digest, simulate_table
 from .steps import Step, steps
@@ -112,6 +113,7 @@ class Session:
         self._parts.seconds.clear()
         self._described = described
         self.scene, self.settings, self._built, self._kernel = looked_at, wanted, built, kernel
+        self._used = tables
         self.redone = Redone(seconds, tuple(t.users for t in simulated), len(plan.tables) - len(simulated))
         self.plan = replace(plan, numbers={**plan.numbers, "redone": str(self.redone)})
         return self.redone
@@ -141,6 +143,13 @@ class Session:
         if step.whole:
             self.samples = step.first + step.count
         return self._developed(step)
+
+    def inspect(self, pixel: tuple[int, int]) -> PixelReport:
+        """What made a pixel (column, row) of the image; ValueError for one outside it."""
+        assert self.plan is not None
+        return inspect(
+            self.scene, self.plan, self._built, self._kernel, self._used, self._parts, self.device, pixel
+        )  # fmt: skip
 
     def _tables_of(self, plan: EffectPlan) -> tuple[list[Table], list[TablePlan]]:
         """(the plan's tables, those of them that had to be simulated)."""
