@@ -29,6 +29,7 @@ _PUBLIC = {
     "Film": ("scratchwarp.render", "Film"),
     "grooves": ("scratchwarp.reflectance.grooves", None),
     "mdf": ("scratchwarp.reflectance.mdf", None),
+    "fit_far_field": ("scratchwarp.plan.far_field", "fit_far_field"),
     "measured": ("scratchwarp.reflectance.measured", None),
     "diffraction": ("scratchwarp.reflectance.diffraction", None),
     "optics": ("scratchwarp.optics", None),

@@ -196,7 +196,8 @@ _EXAMPLES = {
     "validate": "scratchwarp validate ball.usda\n  scratchwarp validate ball.usda --strict --json",
     "view": "scratchwarp view ball.usda\n  scratchwarp view ball.usda --screenshot look.png --frame 12\n"
     "  scratchwarp view ball.usda --profile hairlines\n  scratchwarp view quartic",
-    "fit": "scratchwarp fit cloth.bin cloth.usda --report cloth\n  scratchwarp fit paint.binary paint.usda --modes 1",
+    "fit": "scratchwarp fit cloth.bin cloth.usda --report cloth\n  scratchwarp fit paint.binary paint.usda --modes 1\n"
+    "  scratchwarp fit kettle.usda far.usda --material brass   # scratches seen from far away",
     "scratchmap": "scratchwarp scratchmap hairlines.png --direction 0 --spread 4 --density 900\n"
     "  scratchwarp scratchmap worn.exr --resolution 1024 --stage worn.usda --repeat 3",
     "cache": "scratchwarp cache\n  scratchwarp cache --clear",
@@ -290,9 +291,10 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("--spp", type=int, help="samples a pixel of the rendered image in it")
 
     made = command("fit", "fit highlight stencils to a measured BRDF, written as a material", json_too=True)
-    made.add_argument("measured", metavar="MEASURED", help="UTIA .bin, MERL .binary or RGL .bsdf")
+    made.add_argument("measured", metavar="MEASURED", help="UTIA .bin, MERL .binary, RGL .bsdf, or a USD stage")
     made.add_argument("out", metavar="OUT", help="material.usda, .usdc or .usd")
     made.add_argument("--report", metavar="DIR", help="pictures, differences, metrics and rival models as a web page")
+    made.add_argument("--material", metavar="NAME", help="of a stage, by path or name [the first with scratches]")
     made.add_argument("--modes", type=int, metavar="N", help="axes of anisotropy [as many as are found]")
     made.add_argument("--no-refine", action="store_true", help="the direct fit alone: no scipy, no rivals")
     made.add_argument("--retro", action="store_true", help="highlights return to the light")

@@ -207,7 +207,7 @@ def fit(args: Command) -> int:
         raise UsageError(f"OUT {args.out!r} ends in none of {', '.join(measured_material.SUFFIXES)}")
     if args.modes is not None and not 1 <= args.modes <= 12:
         raise UsageError(f"--modes {args.modes} is not in [1, 12]")
-    brdf = measured.load(args.measured)
+    brdf, notes = _measured(args)
     rivals = measured.RIVALS if args.report and not args.no_refine else ()
     with bar(args.quiet, Path(args.measured).name) as progress:
         found = fit_candidates.candidates(
@@ -217,7 +217,8 @@ def fit(args: Command) -> int:
     measured_material.author(ours.model, args.out, comment=f"Fitted to {name} by scratchwarp.")
     written = [args.out]
     if args.report:
-        notes = [f"Highlight stencils fitted to {name}, {'directly' if args.no_refine else 'then by least squares'}."]
+        how = "directly" if args.no_refine else "and refined by least squares"
+        notes = [f"Highlight stencils fitted to {name}, {how}.", *notes]
         if args.no_refine:
             notes.append("Rival models are fitted by least squares too, and were left out with it.")
         written.append(str(fit_report.write(args.report, f"{name}: a fit", brdf, found, notes)))
@@ -227,6 +228,26 @@ def fit(args: Command) -> int:
     elif not args.quiet:
         print("\n".join([fit_report.table(found), *written]), flush=True)
     return 0
+
+
+def _measured(args: Command) -> tuple[Any, list[str]]:
+    """What ``fit`` is given: the BRDF of a file, or of a scratched material seen from far away."""
+    from .reflectance import measured
+
+    if Path(args.measured).suffix.lower() not in (".usda", ".usdc", ".usd", ".usdz"):
+        if args.material is not None:
+            raise UsageError("--material is of a USD stage")
+        return measured.load(args.measured), []
+    import scratchwarp as sw
+
+    from .plan.far_field import tabulate
+
+    scene = sw.read(args.measured)
+    scratched = [i for i, material in enumerate(scene.materials) if material.layers]
+    if args.material is None and not scratched:
+        raise ValueError(f"{args.measured}: no material has scratches; choose one by --material")
+    _, values, notes = tabulate(scene, scratched[0] if args.material is None else args.material)
+    return values, list(notes)
 
 
 def scratchmap(args: Command) -> int:

@@ -27,7 +27,7 @@ def conductor_index(surface: Any) -> tuple[tuple[float, float, float], tuple[flo
     return tuple(surface.eta), tuple(surface.k)
 
 
-def _constant(value: Any, scene: Scene) -> tuple[float, float, float]:
+def mean_color(value: Any, scene: Scene) -> tuple[float, float, float]:
     """A colour or scalar input as one colour; a texture counts with its mean."""
     if isinstance(value, TextureInput):
         texel = scene.textures[value.texture].pixels.reshape(-1, 4).mean(0) * value.scale + value.bias
@@ -64,12 +64,12 @@ def reflector(scene: Scene, material: Material, layer: Layer) -> tuple[Any, bool
             return optics.Conductor(*conductor_index(surface), _MODELS[layer.fresnel]), False
         return (optics.Dielectric(surface.ior, simple), True) if surface.base == "dielectric" else (None, False)
     if surface.use_specular_workflow:
-        return optics.Schlick(_unit(_constant(surface.specular_color, scene))), True
-    metallic = min(max(_constant(surface.metallic, scene)[0], 0.0), 1.0)
+        return optics.Schlick(_unit(mean_color(surface.specular_color, scene))), True
+    metallic = min(max(mean_color(surface.metallic, scene)[0], 0.0), 1.0)
     if metallic == 0.0:
         return optics.Dielectric(max(surface.ior, 1e-3), simple), True
     r2 = ((1.0 - surface.ior) / (1.0 + surface.ior)) ** 2
-    f0 = _unit(tuple(r2 + (c - r2) * metallic for c in _constant(surface.diffuse_color, scene)))
+    f0 = _unit(tuple(r2 + (c - r2) * metallic for c in mean_color(surface.diffuse_color, scene)))
     return (optics.Mirror() if min(f0) >= 1.0 else optics.Schlick(f0)), metallic < 1.0
 
 

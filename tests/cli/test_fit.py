@@ -97,3 +97,20 @@ def test_what_is_wrong_is_said_once(file, tmp_path, monkeypatch, capsys, argv, s
     captured = capsys.readouterr()
     assert message in captured.err and len(captured.err.strip().splitlines()) == 1
     assert not captured.out and not [p for p in tmp_path.iterdir() if p.name.startswith(".")]
+
+
+def test_a_scratched_material_seen_from_far_away(tmp_path, capsys):
+    """A stage in place of a measurement; materials are asked for by name."""
+    from scratchwarp.pipelines import author_demo
+
+    stage = author_demo.author(tmp_path, 0.05, ["kettle"])[0]
+    out = tmp_path / "far.usda"
+    words = ["fit", str(stage), str(out), "--no-refine"]
+    assert main([*words, "--material", "brass", "--json"]) == 0
+    row = json.loads(capsys.readouterr().out)["candidates"][0]
+    # turned scratches along u: the axis is at 0 or 180 degrees
+    turn = np.degrees(row["numbers"]["modes"][0]["azimuth"]) % 180
+    assert row["metrics"]["psnr"] > 30.0 and min(turn, 180 - turn) < 3.0
+    assert [str(finding) for finding in validate(out)] == []
+    assert main([*words, "--material", "wood"]) == 1 and "'wood' is none of" in capsys.readouterr().err
+    assert main(["fit", "a.bin", str(out), "--material", "wood"]) == 2

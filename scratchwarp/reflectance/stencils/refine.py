@@ -27,7 +27,7 @@ def bounds(modes: int) -> tuple[np.ndarray, np.ndarray]:
     low, high = np.full(count(modes), -np.inf), np.full(count(modes), np.inf)
     for k in range(modes):
         row = MODE * k
-        for place, least, most in ((WIDTH, 0.0, 0.95), (B, -0.05, 1.0), (LOG_ALPHA, -2.0, 12.0), (Q, 0.0, 1e6)):
+        for place, least, most in ((WIDTH, 0.0, 1.0), (B, -0.05, 1.0), (LOG_ALPHA, -2.0, 12.0), (Q, 0.0, 1e6)):
             low[row + place], high[row + place] = least, most
         low[row + COLOR : row + COLOR + 3] = 0.0
     crossings = slice(MODE * modes, MODE * modes + modes - 1)
