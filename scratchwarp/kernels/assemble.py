@@ -67,6 +67,7 @@ def kernel_key(scene: Scene, plan: EffectPlan) -> KernelKey:
         measured=on("base.measured"),
         diffuse_scratches=bool(distributions) and on("scratches.diffuse"),
         sum_coverage=bool(distributions) and on("scratches.sumCoverage"),
+        variation=bool(distributions) and on("scratches.variation"),
         light_links=on("lights.links"),
         light_multipliers=on("lights.multipliers"),
         mesh_lights="mesh" in kinds,
@@ -140,7 +141,9 @@ def assemble(
         lambda: geometry.pack(scene, key.directed, key.display_colors, emitters, device),
     )
     explicit = scene.curves if "curves" in key.distributions else ()
-    strokes, sets = parts.part("curves", (explicit,), lambda: curves.pack(explicit, device))
+    strokes, sets = parts.part(
+        "curves", (explicit, key.variation), lambda: curves.pack(explicit, device, key.variation)
+    )
     atlas = parts.part(
         "textures", (scene.textures,), lambda: pack_textures([t.pixels for t in scene.textures], device=device)
     )
@@ -167,5 +170,6 @@ def assemble(
     )
     used = plan.responses if key.responses else ()
     scratch_set.responses = parts.part("responses", (digest(used),), lambda: pack_responses(used, device))
+    scratch_set.variations = material.pack_variations(plan.layers if key.variation else (), device)
     inputs = (camera_data(scene, plan), shape.arrays, stuff.arrays, scratch_set, light_set)
     return Assembled(key, inputs, (shape, stuff, packed, sets), packed.warnings)

@@ -105,7 +105,7 @@ def make_bounce(key: KernelKey, rotated, emission_at):
                                 spot = spot_of(g, s, lobe.frame, step_x, step_y)
                                 lobe.response = place(scratches.responses, layer.response, spot)
                         if lobe.scratch == 1:
-                            lobe.table = layer.table
+                            lobe.table = laid.table
                             phi = wp.atan2(lobe.wo[1], wp.max(lobe.wo[2], 0.0))
                             lobe.row = table_row(scratches.tables, phi, laid.xi)
                             lobe.sin_theta = -wp.clamp(lobe.wo[0], -1.0, 1.0)

@@ -8,9 +8,11 @@ would count the area twice where they cross, and a material would grow more scra
 import warp as wp
 
 from ..optics.frames_device import Frame
+from ..optics.hash_device import pcg_hash
 from ..scratches import device_function, kind_number
-from ..scratches.curves_device import curves
-from ..scratches.layer_device import LayerData, LayerHit
+from ..scratches.curves_device import curves, drawn_curve
+from ..scratches.layer_device import LayerData, LayerHit, random_bits
+from ..scratches.variation_device import varied_table
 from .geometry_device import Geometry, Surface, uv_motion
 from .key import KernelKey
 from .lobe_device import Layers
@@ -24,7 +26,7 @@ SMALLEST_COVERAGE = wp.constant(1.0e-6)
 def make_gather(key: KernelKey):
     """Device function that runs through a material's layers, compiled for the distributions of ``key``."""
     patterns = [name for name in key.distributions if name != "curves"]
-    functions = [device_function(name) for name in patterns]
+    functions = [device_function(name, key.variation) for name in patterns]
     numbers = [kind_number(name) for name in patterns]
     strokes_number = kind_number("curves")
 
@@ -66,6 +68,7 @@ def make_gather(key: KernelKey):
         xi = float(u)
         result = Layers()
         result.chosen = -1
+        met = LayerHit()
         for k in range(m.layers):
             layer = scratches.layers[m.first_layer + k]
             scale = wp.vec2d(wp.float64(1.0), wp.float64(1.0))
@@ -88,6 +91,8 @@ def make_gather(key: KernelKey):
                     drawn = curves(scratches.segments, layer, s.p, outward, s.uv, du, dv, step_x, step_y, jx, jy, phase)
                     hit.alpha = drawn.alpha
                     stroke = drawn.direction
+                    if wp.static(key.variation):
+                        hit = drawn_curve(scratches.segments, layer, drawn)
             if hit.alpha > SMALLEST_COVERAGE:
                 total += hit.alpha
                 bare *= 1.0 - wp.min(hit.alpha, 1.0)
@@ -99,6 +104,8 @@ def make_gather(key: KernelKey):
                 if xi < p:
                     xi = xi / p
                     result.chosen = m.first_layer + k
+                    result.table = layer.table
+                    met = hit
                     # from pattern space to the surface: along the mapped direction, as an angle from dP/du
                     mapped = du * (hit.direction[0] / sx) + dv * (hit.direction[1] / sy) + stroke
                     along = wp.dot(mapped, flat)
@@ -113,6 +120,10 @@ def make_gather(key: KernelKey):
                     result.direction = along * frame.x + side * frame.y
                 else:
                     xi = (xi - p) / wp.max(1.0 - p, 1.0e-7)
+        if wp.static(key.variation):
+            if result.chosen >= 0 and result.table >= 0:
+                bits = pcg_hash(random_bits(phase) ^ wp.uint32(0x5E3779B9))
+                result.table = varied_table(result.table, scratches.variations[result.chosen], met, bits)
         share = float(0.0)
         if total > 0.0:
             if wp.static(key.sum_coverage):

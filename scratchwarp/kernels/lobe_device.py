@@ -38,6 +38,7 @@ class Layers:
     chosen: int  # layer drawn in proportion to that, or -1
     direction: wp.vec3  # of the chosen scratches, in the tangent plane
     xi: float  # what is left of the random number
+    table: int  # of the chosen scratches
 
 
 @wp.func

@@ -1,6 +1,7 @@
 """Scene materials -> device materials, with their scratch layers."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,6 +14,7 @@ from ..scene.texture import CHANNELS, WRAPS
 from ..scratches import kind_number
 from ..scratches.expand import bend
 from ..scratches.layer_device import LayerData
+from ..scratches.variation_device import VariationData
 from .material_device import MaterialArrays, MaterialData, TextureRead
 
 KINDS = ("preview", "conductor", "dielectric", "diffuse")
@@ -94,10 +96,30 @@ def pack_layer(plan: LayerPlan, curves: Any = None) -> LayerData:
     d.mean, d.table, d.keeps_diffuse, d.weight = sub.coverage, plan.table, int(plan.keeps_diffuse), plan.weight
     d.diffuse = wp.vec3(*plan.diffuse)
     d.response = plan.response
+    d.varied = int(layer.width_variation > 0.0 or plan.variation is not None)
+    wavelength = layer.variation_length or (layer.length if sub.distribution == "spiral" else 0.0)
+    d.wave = 1.0 / wavelength if wavelength > 0.0 else 0.0
+    if curves is not None and curves.uv != (layer.space == "uv"):
+        d.wave = 0.0
     if curves is not None and curves.bvh is not None:
         d.first, d.bvh, d.reach = curves.first, curves.bvh.id, curves.reach
         d.curve_uv, d.width_uv = int(curves.uv), int(curves.width_uv)
     return d
+
+
+def pack_variations(layers: Sequence[Sequence[LayerPlan]], device: str = "cpu") -> Any:
+    """Device array of how the scratches of each sublayer differ, in the order of ``pack``."""
+    records = []
+    for plan in (p for own in layers for p in own):
+        v: Any = VariationData()
+        v.aspects = v.blends = 1
+        if plan.variation is not None:
+            how = plan.variation
+            v.aspects, v.blends, v.low, v.aspect = how.aspects, how.blends, how.low, how.aspect
+            v.scale = (how.aspects - 1) / max(how.high - how.low, 1e-9)
+            v.depth, v.own = plan.sublayer.layer.depth_variation, int(how.explicit)
+        records.append(v)
+    return wp.array(records or [VariationData()], dtype=VariationData, device=device)
 
 
 def pack(scene: Scene, layers: list[list[LayerData]], atlas: Any, device: str = "cpu") -> PackedMaterials:

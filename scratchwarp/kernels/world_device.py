@@ -7,6 +7,7 @@ from ..reflectance.profile_table_device import TableArrays
 from ..reflectance.responses.response_device import ResponseArrays
 from ..scratches.curves_device import SegmentArrays
 from ..scratches.layer_device import LayerData
+from ..scratches.variation_device import VariationData
 
 wp.set_module_options({"enable_backward": False})
 
@@ -26,6 +27,7 @@ class ScratchSet:
     """All sublayers, the segments of explicit ones, and the profile tables and responses they reflect by."""
 
     layers: wp.array(dtype=LayerData)
+    variations: wp.array(dtype=VariationData)  # of each layer, where scratches of some layer differ
     segments: SegmentArrays
     tables: TableArrays
     responses: ResponseArrays

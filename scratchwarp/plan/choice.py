@@ -32,6 +32,7 @@ class TablePlan:
             error of an albedo.
         users: the layers that share it.
         source: traced, or facets for a table of the profile's facets and their masking alone.
+        parts: what to simulate and average instead of ``profile``, ((profile, share), ...), for scratches that differ.
     """
 
     key: tuple[Any, ...]
@@ -44,6 +45,7 @@ class TablePlan:
     theta_model: str = "gamma"
     error: float = 0.0
     source: str = "traced"
+    parts: tuple[tuple[Any, float], ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,10 +59,23 @@ class ResponsePlan:
     users: tuple[str, ...]
 
 
+@dataclass(frozen=True)
+class Variation:
+    """How the scratches of a sublayer differ: ``blends`` runs of ``aspects`` tables from its first table on, the
+    aspects at wall angles from ``low`` to ``high`` [rad]; ``explicit``: scratches have aspects of their own."""
+
+    aspects: int
+    blends: int
+    low: float
+    high: float
+    aspect: float
+    explicit: bool = False
+
+
 @dataclass(frozen=True, eq=False)
 class LayerPlan:
-    """A sublayer to render, its table or response (neither: a diffuse scratch), and whether the base's diffuse term
-    shows through."""
+    """A sublayer to render, its first table or its response (neither: a diffuse scratch), whether the base's diffuse
+    term shows through, and how its scratches differ (None: they are alike)."""
 
     sublayer: Any
     table: int
@@ -68,6 +83,7 @@ class LayerPlan:
     weight: float
     diffuse: tuple[float, float, float] = (0.0, 0.0, 0.0)
     response: int = -1
+    variation: Variation | None = None
 
     @property
     def lambert(self) -> bool:

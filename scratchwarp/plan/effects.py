@@ -91,6 +91,16 @@ def _sum_coverage(f: Facts) -> Answer:
     return False, "layers overlap at random, 1 - product (1 - alpha); on: the sum, at most 1 (Raymond 2016 Eq. 4)", ()
 
 
+def _variation(f: Facts) -> Answer:
+    found = [p for p in f.every if p.variation is not None or (p.sublayer.layer.width_variation > 0.0)]
+    tables = {p.table + k for p in found if p.variation for k in range(p.variation.aspects * p.variation.blends)}
+    return _answer(
+        [p.sublayer.layer.label for p in found],
+        f"scratches of one layer differ: {len(tables)} tables stand for them",
+        "the scratches of each layer are alike",
+    )
+
+
 def _diffraction(f: Facts) -> Answer:
     asked = [m.path for m in f.materials if m.wave is not None]
     if asked:
@@ -173,6 +183,7 @@ EFFECTS: dict[str, Callable[[Facts], Answer]] = {
     "scratches.diffuse": _diffuse_scratches,
     **{response.effect: _response(name) for name, response in RESPONSES.items()},
     "scratches.sumCoverage": _sum_coverage,
+    "scratches.variation": _variation,
     "diffraction": _diffraction,
     "grooves": _grooves,
     "base.preview": lambda f: _surfaces(

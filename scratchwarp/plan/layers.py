@@ -10,11 +10,12 @@ import numpy as np
 from .. import optics
 from ..optics import metals
 from ..scene import Layer, Material, PreviewSurface, Scene, ScratchSurface, TextureInput
-from ..scratches.expand import sublayers
+from ..scratches.expand import Sublayer, sublayers
 from . import models
-from .choice import LayerPlan, ResponsePlan, TablePlan
+from .choice import LayerPlan, ResponsePlan, TablePlan, Variation
 from .profiles import cross_section
-from .theta import theta_model
+from .theta import RENDERED, theta_model
+from .variation import varied
 
 _MODELS = {"exact": "exact", "schlick": "schlick", "lazanyi": "lazanyi", "lazanyiError": "lazanyi-error"}
 
@@ -120,6 +121,37 @@ class _Tables:
         self._plans[key] = known
         return list(self._plans).index(key)
 
+    def varied(self, sublayer: Sublayer, fresnel: Any, differ: bool) -> tuple[int, Variation | None]:
+        """Number of the first table of a sublayer whose scratches ``differ``, and how they do (None: they are
+        alike)."""
+        layer, curves = sublayer.layer, sublayer.curves
+        sized = _sized(self._scene, layer, curves)
+        record = self._scene.curves[curves] if curves >= 0 else None
+        found = varied(sublayer, sized, record, self._max_error) if differ else None
+        if found is None:
+            return self.index(layer, curves, fresnel), None
+        how, nodes = found
+        reflecting = None if isinstance(fresnel, optics.Mirror) else fresnel
+        digest = tuple((tuple((p.token, s) for p, s in parts)) for parts in nodes)
+        first = None
+        for number, parts in enumerate(nodes):
+            key = ("varied", number, digest, fresnel, layer.model if layer.model in models.TABLE_MODELS else "")
+            known = self._plans.get(key)
+            if known is None:
+                middle = parts[len(parts) // 2][0]
+                model, off = self._chosen.get(key) or max(
+                    (theta_model(p, reflecting, self._max_error) for p in {parts[0][0], parts[-1][0]}),
+                    key=lambda chosen: RENDERED.index(chosen[0]),
+                )
+                known = TablePlan(key, middle, reflecting, 2000, (), theta_model=model, error=off, parts=parts)
+                known = models.changed(known, layer.model)
+            if layer.label not in known.users:
+                known = replace(known, users=(*known.users, layer.label))
+            self._plans[key] = known
+            first = list(self._plans).index(key) if first is None else first
+        assert first is not None
+        return first, how
+
     def plans(self) -> tuple[TablePlan, ...]:
         """All of them, by number."""
         return tuple(self._plans.values())
@@ -130,8 +162,6 @@ def _complaints(material: Material, layer: Layer, fresnel: Any) -> list[str]:
     said = []
     if layer.model in ("diffraction", "groove", "normalMap"):
         said.append(f"{layer.label}: model {layer.model} is rendered by its profile table for now")
-    if layer.depth_variation > 0.0:
-        said.append(f"{layer.label}: depthVariation {layer.depth_variation:g} is not honoured yet")
     surface = material.surface
     if isinstance(surface, PreviewSurface) and layer.material == "inherit" and isinstance(fresnel, optics.Schlick):
         read = ("specular_color",) if surface.use_specular_workflow else ("diffuse_color", "metallic")
@@ -178,7 +208,7 @@ def plan_layers(
                 weight = lobe_weight(fresnel)
                 for s in subs:
                     answer = responses.index(layer, _sized(scene, layer, s.curves), fresnel)
-                    table = tables.index(layer, s.curves, fresnel) if answer < 0 else -1
-                    own.append(LayerPlan(s, table, keeps, weight, response=answer))
+                    table, how = tables.varied(s, fresnel, allowed("variation")) if answer < 0 else (-1, None)
+                    own.append(LayerPlan(s, table, keeps, weight, response=answer, variation=how))
         every.append(tuple(own))
     return tuple(every), tables.plans(), responses.plans(), tuple(warnings)

@@ -4,10 +4,9 @@ Files, the way a table is made: ``profile`` the record, ``shapes`` named ones, `
 ``tracer_device`` the next hit, ``path_device`` a whole path, ``trace_kernels`` all rays of a column; ``reflectors``
 Fresnel as rows, ``energy_kernels`` and ``polarised_kernels`` what paths carry and where it lands; ``paths`` the host
 of both passes, ``launch`` threads; ``tracing`` columns and symmetries, ``balance`` (and its kernels) whole tables,
-``simulation`` the calls; ``theta`` models along the scratch, ``theta_choice`` their errors; ``table`` the result,
-``table_device`` and ``table_kernels`` its sampling; ``facet_table`` one of facets and masking alone; ``drawing`` a
-picture of it; ``single_rays`` rays to look at;
-``cache`` tables on disk.
+``simulation`` the calls, ``mixture`` averages of tables; ``theta`` models along the scratch, ``theta_choice`` their
+errors; ``table`` the result, ``table_device`` and ``table_kernels`` its sampling; ``facet_table`` one of facets and
+masking alone; ``drawing`` a picture of it; ``single_rays`` rays to look at; ``cache`` tables on disk.
 """
 
 from scratchwarp.profiles.cache import Store as Store
@@ -16,6 +15,8 @@ from scratchwarp.profiles.cache import store as store
 from scratchwarp.profiles.cache import write_table as write_table
 from scratchwarp.profiles.drawing import picture as picture
 from scratchwarp.profiles.facet_table import facet_table as facet_table
+from scratchwarp.profiles.mixture import between as between
+from scratchwarp.profiles.mixture import mixture as mixture
 from scratchwarp.profiles.profile import Profile as Profile
 from scratchwarp.profiles.shapes import shape as shape
 from scratchwarp.profiles.shapes import shape_names as shape_names

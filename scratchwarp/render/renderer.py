@@ -25,12 +25,12 @@ from .tiles import Tile, run, tiles
 CHECKPOINT_EVERY = 10.0
 
 
-def simulate_table(table: TablePlan, threads: int) -> profiles.Table:
-    """One of the plan's profile tables."""
+def _simulated(table: TablePlan, profile: profiles.Profile, threads: int) -> profiles.Table:
+    """The table of one cross-section, as ``table`` asks for it."""
     if table.source == "facets":
-        return profiles.facet_table(table.profile, table.fresnel, table.resolution, table.theta_model)
+        return profiles.facet_table(profile, table.fresnel, table.resolution, table.theta_model)
     return profiles.simulate(
-        table.profile,
+        profile,
         resolution=table.resolution,
         rays=table.rays,
         fresnel=table.fresnel,
@@ -40,12 +40,31 @@ def simulate_table(table: TablePlan, threads: int) -> profiles.Table:
     )
 
 
+def simulate_table(
+    table: TablePlan, threads: int, known: dict[tuple[Any, ...], profiles.Table] | None = None
+) -> profiles.Table:
+    """One of the plan's profile tables; ``known``: the cross-sections simulated for the table before, which it may
+    share, replaced by its own."""
+    if not table.parts:
+        return _simulated(table, table.profile, threads)
+    known = {} if known is None else known
+    asked = (table.source, table.fresnel, table.theta_model, table.max_bounces, table.resolution, table.rays)
+    made: dict[tuple[Any, ...], profiles.Table] = {}
+    for profile, _ in table.parts:
+        key = (profile.token, asked)
+        made[key] = made.get(key) or known.get(key) or _simulated(table, profile, threads)
+    known.clear()
+    known.update(made)
+    return profiles.mixture([made[p.token, asked] for p, _ in table.parts], [share for _, share in table.parts])
+
+
 def simulate_tables(plan: EffectPlan, threads: int, progress: Progress = silent) -> list[profiles.Table]:
     """The plan's profile tables, in order."""
-    made = []
+    made: list[profiles.Table] = []
+    known: dict[tuple[Any, ...], profiles.Table] = {}
     for number, table in enumerate(plan.tables):
         progress(number, len(plan.tables), "simulate")
-        made.append(simulate_table(table, threads))
+        made.append(simulate_table(table, threads, known))
     if plan.tables:
         progress(len(plan.tables), len(plan.tables), "simulate")
     return made

@@ -72,6 +72,9 @@ class Layer:
         curves: indices into ``Scene.curves``.
         patterns: overlaid sets of parallel scratches of a worley layer, each turned within ``angle_spread``.
         cross_angle: radians between the two sets of a crosshatch.
+        variation_length: how far one goes along a scratch until its width, depth and profile have changed and come
+            back, in the unit of length; 0: each scratch is alike all along.
+        profile_end, profile_variation: another cross-section, and how far scratches go towards it at most, in [0, 1].
         extra: further attributes by schema name, as authored.
     """
 
@@ -107,6 +110,9 @@ class Layer:
     patterns: int = 1
     cross_angle: float = np.pi / 2
     extra: tuple[tuple[str, Any], ...] = ()
+    variation_length: float = 0.0
+    profile_variation: float = 0.0
+    profile_end: Profile | None = None
 
     def __post_init__(self) -> None:
         who = self.label
@@ -115,11 +121,12 @@ class Layer:
         one_of(who, "space", self.space, SPACES)
         one_of(who, "material", self.material, MATERIALS)
         one_of(who, "fresnelModel", self.fresnel, FRESNELS)
-        for name in ("width", "depth", "length", "density", "pitch"):
+        for name in ("width", "depth", "length", "density", "pitch", "variation_length"):
             in_range(who, name, getattr(self, name), 0.0, 1e12)
         in_range(who, "coverage", self.coverage, 0.0, 1.0)
         in_range(who, "widthVariation", self.width_variation, 0.0, 1.0)
         in_range(who, "depthVariation", self.depth_variation, 0.0, 1.0)
+        in_range(who, "profileVariation", self.profile_variation, 0.0, 1.0)
         for name in ("angle", "angle_spread", "curvature"):
             in_range(who, name, getattr(self, name), -1e6, 1e6)
 

@@ -5,10 +5,12 @@ Files (device):
     worley_device      stretched cellular noise, Raymond 2016 Eq. 7
     lines_device       linear, concentric and spiral patterns of regular pitch
     curves_device      explicit curves found in a bounding volume hierarchy
+    variation_device   how wide and deep one scratch is, and its table
 Files (host):
     worley             threshold for a coverage, mean coverage for a threshold
     expand             a Layer as the author wrote it -> the sublayers that the kernel runs through
     curves             polylines -> segments and their hierarchy
+    variation          how the scratches of a layer differ, and the tables that stand for them
 
 A distribution is one device function with the signature of ``worley_device.worley`` and one line in ``KINDS``; explicit
 curves alone look at the surface itself instead of the pattern plane.
@@ -32,7 +34,8 @@ def kind_number(distribution: str) -> int:
     return list(KINDS).index(distribution)
 
 
-def device_function(distribution: str):
-    """The Warp function that finds the coverage of a distribution of ``KINDS`` (imports Warp)."""
+def device_function(distribution: str, varied: bool = False):
+    """The Warp function that finds the coverage of a distribution of ``KINDS`` (imports Warp); ``varied``: the one that
+    also says which scratch is there."""
     module, name = KINDS[distribution]
-    return getattr(importlib.import_module(module), name)
+    return getattr(importlib.import_module(module), f"{name}_varied" if varied else name)

@@ -37,12 +37,36 @@ def segments(curves: Curves) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     a, b = curves.points[start], curves.points[start + 1]
     scale = 1.0 if curves.width_unit == "uv" else 1e-6
     half = 0.25 * scale * (curves.widths[start] + curves.widths[start + 1])
-    keep = (np.abs(b - a).max(1) > 0) & (half > 0)
+    keep = (np.linalg.norm(b - a, axis=1) > 0) & (half > 0)
     return a[keep], b[keep], half[keep]
 
 
-def pack(sets: Sequence[Curves], device: str = "cpu") -> tuple[SegmentArrays, tuple[CurveSet, ...]]:
-    """Device arrays of all sets, and what a layer needs to know of each."""
+def along(curves: Curves) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(curve number [n], length before each segment and its own [n, 2], aspects at its ends [n, 2]) of the segments
+    that
+    ``segments`` gives. Lengths in micrometres, or in squares in uv. Aspects are -1 where widths and depths have no
+    common unit or the width is 0."""
+    last = np.zeros(len(curves.points), bool)
+    last[np.cumsum(curves.counts) - 1] = True
+    start = np.flatnonzero(~last)
+    step = np.linalg.norm(curves.points[start + 1] - curves.points[start], axis=1)
+    step *= 1e6 if curves.space == "object" else 1.0
+    number = np.repeat(np.arange(len(curves.counts)), curves.counts)[start]
+    before = np.cumsum(step) - step
+    first = np.searchsorted(number, number)  # of each curve
+    before = before - before[first] if len(before) else before
+    aspects = np.full(len(curves.points), -1.0)
+    if curves.width_unit == curves.depth_unit:
+        np.divide(curves.depths, curves.widths, out=aspects, where=curves.widths > 0)
+    keep = (step > 0) & (curves.widths[start] + curves.widths[start + 1] > 0)
+    ends = np.stack([aspects[start], aspects[start + 1]], axis=1)
+    return number[keep], np.stack([before, step], axis=1)[keep], ends[keep]
+
+
+def pack(
+    sets: Sequence[Curves], device: str = "cpu", varied: bool = False
+) -> tuple[SegmentArrays, tuple[CurveSet, ...]]:
+    """Device arrays of all sets, and what a layer needs to know of each; ``varied``: scratches differ."""
     made, parts, first = [], [], 0
     for curves in sets:
         a, b, half = segments(curves)
@@ -64,4 +88,11 @@ def pack(sets: Sequence[Curves], device: str = "cpu") -> tuple[SegmentArrays, tu
     arrays.a = wp.array(columns[0].reshape(-1, 3).astype(np.float32), dtype=wp.vec3, device=device)
     arrays.b = wp.array(columns[1].reshape(-1, 3).astype(np.float32), dtype=wp.vec3, device=device)
     arrays.half = wp.array(columns[2].ravel().astype(np.float32), dtype=float, device=device)
+    more = list(zip(*(along(c) for c in sets), strict=True)) if varied and sets else []
+    number, run, aspects = (
+        (np.concatenate(c) for c in more) if more else (np.zeros(1), np.zeros((1, 2)), np.zeros((1, 2)))
+    )
+    arrays.curve = wp.array(number.astype(np.int32), dtype=int, device=device)
+    arrays.run = wp.array(run.astype(np.float32), dtype=wp.vec2, device=device)
+    arrays.aspects = wp.array(aspects.astype(np.float32), dtype=wp.vec2, device=device)
     return arrays, tuple(made)

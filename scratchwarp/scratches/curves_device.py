@@ -7,7 +7,8 @@ is 1 - product (1 - a_i). One segment is drawn in proportion to what it covers a
 
 import warp as wp
 
-from .layer_device import LayerData
+from ..optics.hash_device import hash_combine
+from .layer_device import LayerData, LayerHit
 
 wp.set_module_options({"enable_backward": False})
 
@@ -22,6 +23,10 @@ class SegmentArrays:
     a: wp.array(dtype=wp.vec3)
     b: wp.array(dtype=wp.vec3)
     half: wp.array(dtype=float)
+    # read where scratches vary: curve number; length before a segment and its own (micrometres, or of the uv square)
+    curve: wp.array(dtype=int)
+    run: wp.array(dtype=wp.vec2)
+    aspects: wp.array(dtype=wp.vec2)  # depth over width at both ends
 
 
 @wp.struct
@@ -31,6 +36,8 @@ class CurveHit:
     alpha: float
     direction: wp.vec3
     xi: float
+    segment: int  # the drawn one, -1: none
+    at: float  # where on it, in [0, 1]
 
 
 @wp.func
@@ -83,6 +90,7 @@ def curves(
 
     hit = CurveHit()
     hit.xi = u
+    hit.segment = -1
     clear = float(1.0)
     total = float(0.0)
     query = wp.bvh_query_aabb(layer.bvh, here - box - reach, here + box + reach)
@@ -112,8 +120,27 @@ def curves(
                 if hit.xi < chance:
                     hit.xi = hit.xi / chance
                     hit.direction = t
+                    hit.segment = k
+                    hit.at = wp.clamp(wp.dot(rel, t) / length, 0.0, 1.0)
                 else:
                     hit.xi = (hit.xi - chance) / wp.max(1.0 - chance, 1.0e-7)
     hit.alpha = 1.0 - clear
     hit.xi = wp.clamp(hit.xi, 0.0, 0.9999999)
+    return hit
+
+
+@wp.func
+def drawn_curve(segments: SegmentArrays, layer: LayerData, drawn: CurveHit) -> LayerHit:
+    """The scratch of a drawn segment: which, where on it, and its aspect there."""
+    hit = LayerHit()
+    hit.alpha = drawn.alpha
+    hit.stretch = 1.0
+    hit.aspect = -1.0
+    k = drawn.segment
+    if k >= 0:
+        run = segments.run[k]
+        ends = segments.aspects[k]
+        hit.scratch = hash_combine(layer.seed, wp.uint32(segments.curve[k]))
+        hit.along = (run[0] + drawn.at * run[1]) * layer.wave
+        hit.aspect = wp.lerp(ends[0], ends[1], drawn.at)
     return hit

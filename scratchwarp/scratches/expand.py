@@ -6,6 +6,7 @@ at random over one another, they cover as much as the author asked for: 1 - (1 -
 """
 
 import math
+import zlib
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -65,16 +66,19 @@ def _statistical(layer: Layer, angle: float, share: float, seed: int, offset: tu
 def _regular(layer: Layer, distribution: str, angle: float) -> Sublayer | None:
     if layer.width <= 0.0 or layer.pitch <= 0.0:
         return None
-    covered = min(layer.width / layer.pitch, 1.0)
+    # bands that vary are at most a pitch wide
+    spread = 1.0 + layer.width_variation * ((np.arange(256) + 0.5) / 128.0 - 1.0)
+    covered = float(np.minimum(layer.width / layer.pitch * spread, 1.0).mean())
+    seed = zlib.crc32(f"{layer.seed} {layer.name} {angle!r}".encode()) | 1
     if covered >= 1.0 and distribution == "linear":
-        return Sublayer(layer, "full", angle, 1.0)
-    return Sublayer(layer, distribution, angle, covered, offset=layer.offset)
+        return Sublayer(layer, "full", angle, 1.0, seed=seed)
+    return Sublayer(layer, distribution, angle, covered, seed=seed, offset=layer.offset)
 
 
 def sublayers(layer: Layer) -> tuple[Sublayer, ...]:
     """The sets of scratches that ``layer`` stands for; none when nothing of it can be seen."""
     if layer.distribution == "curves":
-        return tuple(Sublayer(layer, "curves", 0.0, 1.0, curves=index) for index in layer.curves)
+        return tuple(Sublayer(layer, "curves", 0.0, 1.0, seed=layer.seed, curves=index) for index in layer.curves)
     if layer.distribution in ("linear", "concentric", "spiral"):
         made = [_regular(layer, layer.distribution, layer.angle)]
     elif layer.distribution == "crosshatch":

@@ -40,14 +40,25 @@ class LayerData:
     curve_uv: int  # curves: 1 when segments lie in the uv square
     width_uv: int  # curves: 1 when half widths are fractions of it
     response: int  # what it reflects by in place of a table, -1: nothing
+    varied: int  # 1: scratches differ from one another
+    wave: float  # wavelengths of the variation along a scratch in a pattern unit; 0: none
 
 
 @wp.struct
 class LayerHit:
-    """Covered fraction of the footprint, and the unit direction of the scratches there, in pattern space."""
+    """Covered fraction of the footprint, and the unit direction of the scratches there, in pattern space.
+
+    Where scratches vary, also one of them drawn by what it covers: ``scratch`` its hash, ``along`` where on it in
+    wavelengths of its variation, ``stretch`` its width there over the mean width; ``aspect``, of explicit scratches,
+    its depth over width.
+    """
 
     alpha: float
     direction: wp.vec2
+    scratch: wp.uint32
+    along: float
+    stretch: float
+    aspect: float
 
 
 @wp.func
@@ -57,3 +68,9 @@ def longer(a: wp.vec2, b: wp.vec2) -> wp.vec2:
     if wp.dot(b, b) > wp.dot(a, a):
         result = b
     return result
+
+
+@wp.func
+def random_bits(phase: float) -> wp.uint32:
+    """Random bits from a random number in [0, 1)."""
+    return wp.uint32(wp.clamp(phase, 0.0, 0.9999999) * 4294967040.0)

@@ -10,7 +10,8 @@ one integer, so overlapping disks are counted once.
 import warp as wp
 
 from ..optics.hash_device import pcg_hash, unit_float
-from .layer_device import LayerData, LayerHit, longer
+from .layer_device import LayerData, LayerHit, longer, random_bits
+from .variation_device import WIDTH, drawn_stretch, stretch
 
 wp.set_module_options({"enable_backward": False})
 
@@ -43,118 +44,193 @@ def interval_bits(t0: float, t1: float, phase: float) -> wp.uint64:
     return bits
 
 
-@wp.func
-def chord_coverage(
-    p: wp.vec2, a: wp.vec2, ix: int, iy: int, radius: float, variation: float, seed: wp.uint32, phase: float
-) -> float:
-    """Fraction of the segment p - a/2 .. p + a/2 (cells, relative to cell (ix, iy)) inside a disk."""
-    swap = wp.abs(a[0]) > wp.abs(a[1])
-    q = p
-    d = a
-    if swap:
-        q = wp.vec2(p[1], p[0])
-        d = wp.vec2(a[1], a[0])
-    reach = radius * (1.0 + variation)
-    start = q - 0.5 * d
-    low = wp.min(start[1], start[1] + d[1])
-    high = wp.max(start[1], start[1] + d[1])
-    length2 = wp.dot(d, d)
-    mask = wp.uint64(0)
-    row0 = int(wp.floor(low - reach))
-    row1 = int(wp.floor(high + reach))
-    for row in range(row0, row1 + 1):
-        # part of the segment that a disk of this row can touch
-        s0 = float(0.0)
-        s1 = float(1.0)
-        if wp.abs(d[1]) > 1.0e-6:
-            e0 = (float(row) - reach - start[1]) / d[1]
-            e1 = (float(row) + 1.0 + reach - start[1]) / d[1]
-            s0 = wp.clamp(wp.min(e0, e1), 0.0, 1.0)
-            s1 = wp.clamp(wp.max(e0, e1), 0.0, 1.0)
-        x0 = start[0] + s0 * d[0]
-        x1 = start[0] + s1 * d[0]
-        column0 = int(wp.floor(wp.min(x0, x1) - reach))
-        column1 = int(wp.floor(wp.max(x0, x1) + reach))
-        for column in range(column0, column1 + 1):
-            cx = ix + column
-            cy = iy + row
-            if swap:
-                cx = ix + row
-                cy = iy + column
-            h1 = pcg_hash(wp.uint32(cx) ^ pcg_hash(wp.uint32(cy) ^ seed))
-            h2 = pcg_hash(h1 ^ wp.uint32(0x3C6EF372))
-            fx = float(column) + unit_float(h1)
-            fy = float(row) + unit_float(h2)
-            if swap:
-                fx = float(column) + unit_float(h2)
-                fy = float(row) + unit_float(h1)
-            r = radius
-            if variation > 0.0:
-                r = radius * (1.0 + variation * (2.0 * unit_float(pcg_hash(h2 ^ wp.uint32(0x15EBCA6B))) - 1.0))
-            to = wp.vec2(start[0] - fx, start[1] - fy)
-            c = wp.dot(to, to) - r * r
-            if length2 < 1.0e-10:
-                if c <= 0.0:
-                    mask = ~wp.uint64(0)
-            else:
+@wp.struct
+class Chord:
+    """Covered fraction of a segment, and one of the scratches there, drawn by what it covers.
+
+    ``scratch``: its hash; ``along``: where on it, from its middle, in wavelengths of its variation.
+    """
+
+    fraction: float
+    scratch: wp.uint32
+    along: float
+
+
+def make_chord(varied: bool):
+    """Device function of a chord's coverage; ``varied``: it says of which scratch, too."""
+
+    @wp.func
+    def chord(
+        p: wp.vec2,
+        a: wp.vec2,
+        ix: int,
+        iy: int,
+        radius: float,
+        variation: float,
+        seed: wp.uint32,
+        phase: float,
+        wave: float,
+    ) -> Chord:
+        """The segment p - a/2 .. p + a/2 (cells, relative to cell (ix, iy)) and the disks of width ``radius`` times
+        1 -+ ``variation``, which change along x by ``wave`` wavelengths a cell (0: not at all)."""
+        swap = wp.abs(a[0]) > wp.abs(a[1])
+        q = p
+        d = a
+        if swap:
+            q = wp.vec2(p[1], p[0])
+            d = wp.vec2(a[1], a[0])
+        reach = radius * (1.0 + variation)
+        start = q - 0.5 * d
+        low = wp.min(start[1], start[1] + d[1])
+        high = wp.max(start[1], start[1] + d[1])
+        length2 = wp.dot(d, d)
+        mask = wp.uint64(0)
+        found = Chord()
+        seen = float(0.0)
+        bits = random_bits(phase)
+        row0 = int(wp.floor(low - reach))
+        row1 = int(wp.floor(high + reach))
+        for row in range(row0, row1 + 1):
+            # part of the segment that a disk of this row can touch
+            s0 = float(0.0)
+            s1 = float(1.0)
+            if wp.abs(d[1]) > 1.0e-6:
+                e0 = (float(row) - reach - start[1]) / d[1]
+                e1 = (float(row) + 1.0 + reach - start[1]) / d[1]
+                s0 = wp.clamp(wp.min(e0, e1), 0.0, 1.0)
+                s1 = wp.clamp(wp.max(e0, e1), 0.0, 1.0)
+            x0 = start[0] + s0 * d[0]
+            x1 = start[0] + s1 * d[0]
+            column0 = int(wp.floor(wp.min(x0, x1) - reach))
+            column1 = int(wp.floor(wp.max(x0, x1) + reach))
+            for column in range(column0, column1 + 1):
+                cx = ix + column
+                cy = iy + row
+                if swap:
+                    cx = ix + row
+                    cy = iy + column
+                h1 = pcg_hash(wp.uint32(cx) ^ pcg_hash(wp.uint32(cy) ^ seed))
+                h2 = pcg_hash(h1 ^ wp.uint32(0x3C6EF372))
+                fx = float(column) + unit_float(h1)
+                fy = float(row) + unit_float(h2)
+                if swap:
+                    fx = float(column) + unit_float(h2)
+                    fy = float(row) + unit_float(h1)
+                to = wp.vec2(start[0] - fx, start[1] - fy)
                 b = wp.dot(to, d)
-                discriminant = b * b - length2 * c
-                if discriminant > 0.0:
-                    root = wp.sqrt(discriminant)
-                    mask = mask | interval_bits((-b - root) / length2, (-b + root) / length2, phase)
-    return float(count_bits(mask)) / 64.0
+                r = radius
+                along = float(0.0)
+                if wp.static(varied):
+                    # where the segment comes nearest, along the scratch
+                    near = wp.clamp(-b / wp.max(length2, 1.0e-10), 0.0, 1.0)
+                    along = (to[0] + near * d[0]) * wave
+                    if swap:
+                        along = (to[1] + near * d[1]) * wave
+                    r = radius * stretch(h2, along, variation)
+                else:
+                    if variation > 0.0:
+                        r = radius * (
+                            1.0 + variation * (1.0 - 2.0 * wp.abs(2.0 * unit_float(pcg_hash(h2 ^ WIDTH)) - 1.0))
+                        )
+                c = wp.dot(to, to) - r * r
+                added = wp.uint64(0)
+                if length2 < 1.0e-10:
+                    if c <= 0.0:
+                        added = ~wp.uint64(0)
+                else:
+                    discriminant = b * b - length2 * c
+                    if discriminant > 0.0:
+                        root = wp.sqrt(discriminant)
+                        added = interval_bits((-b - root) / length2, (-b + root) / length2, phase)
+                if wp.static(varied):
+                    more = float(count_bits(added & ~mask))
+                    if more > 0.0:
+                        seen += more
+                        bits = pcg_hash(bits)
+                        if unit_float(bits) * seen < more:
+                            found.scratch = h2
+                            found.along = along
+                mask = mask | added
+        found.fraction = float(count_bits(mask)) / 64.0
+        return found
+
+    return chord
 
 
-@wp.func
-def worley(layer: LayerData, q: wp.vec2d, scale: wp.vec2d, ax: wp.vec2, ay: wp.vec2, phase: float) -> LayerHit:
-    """Coverage of a footprint with axes ``ax``, ``ay`` about ``q``, all in pattern space; ``phase`` in [0, 1)."""
-    c = wp.float64(layer.cos_a)
-    s = wp.float64(layer.sin_a)
-    x = c * q[0] + s * q[1]
-    y = c * q[1] - s * q[0]
-    # y -> y - f(x, y) turns straight scratches into waves; the scratch follows dy/dx = f_x / (1 - f_y)
-    fx = float(0.0)
-    fy = float(0.0)
-    if layer.bend > wp.float64(0.0):
-        angle = layer.bend_number * (x + y / wp.float64(3.0))
-        y -= layer.bend * wp.sin(angle)
-        fx = float(layer.bend * layer.bend_number * wp.cos(angle))
-        fy = fx / 3.0
-    px = x * layer.inv_length + layer.offset[0]
-    py = y * layer.inv_width + layer.offset[1]
-    ix = wp.floor(px)
-    iy = wp.floor(py)
+def make_worley(varied: bool):
+    """Device function of the pattern; ``varied``: it also draws one of the scratches under the footprint."""
+    chord = make_chord(varied)
 
-    il = float(layer.inv_length)
-    iw = float(layer.inv_width)
-    ax_x = layer.cos_a * ax[0] + layer.sin_a * ax[1]
-    ax_y = layer.cos_a * ax[1] - layer.sin_a * ax[0]
-    ay_x = layer.cos_a * ay[0] + layer.sin_a * ay[1]
-    ay_y = layer.cos_a * ay[1] - layer.sin_a * ay[0]
-    a = longer(
-        wp.vec2(ax_x * il, (ax_y * (1.0 - fy) - ax_x * fx) * iw),
-        wp.vec2(ay_x * il, (ay_y * (1.0 - fy) - ay_x * fx) * iw),
-    )
-    length = wp.length(a)
-    far = wp.clamp((length - FAR_BEGIN) / (FAR_END - FAR_BEGIN), 0.0, 1.0)
-    alpha = layer.mean
-    if far < 1.0:
-        near = chord_coverage(
-            wp.vec2(float(px - ix), float(py - iy)),
-            a,
-            int(ix),
-            int(iy),
-            layer.radius,
-            layer.width_variation,
-            layer.seed,
-            phase,
+    @wp.func
+    def worley(layer: LayerData, q: wp.vec2d, scale: wp.vec2d, ax: wp.vec2, ay: wp.vec2, phase: float) -> LayerHit:
+        """Coverage of a footprint with axes ``ax``, ``ay`` about ``q``, all in pattern space; ``phase`` in [0, 1)."""
+        c = wp.float64(layer.cos_a)
+        s = wp.float64(layer.sin_a)
+        x = c * q[0] + s * q[1]
+        y = c * q[1] - s * q[0]
+        # y -> y - f(x, y) turns straight scratches into waves; the scratch follows dy/dx = f_x / (1 - f_y)
+        fx = float(0.0)
+        fy = float(0.0)
+        if layer.bend > wp.float64(0.0):
+            angle = layer.bend_number * (x + y / wp.float64(3.0))
+            y -= layer.bend * wp.sin(angle)
+            fx = float(layer.bend * layer.bend_number * wp.cos(angle))
+            fy = fx / 3.0
+        px = x * layer.inv_length + layer.offset[0]
+        py = y * layer.inv_width + layer.offset[1]
+        ix = wp.floor(px)
+        iy = wp.floor(py)
+
+        il = float(layer.inv_length)
+        iw = float(layer.inv_width)
+        ax_x = layer.cos_a * ax[0] + layer.sin_a * ax[1]
+        ax_y = layer.cos_a * ax[1] - layer.sin_a * ax[0]
+        ay_x = layer.cos_a * ay[0] + layer.sin_a * ay[1]
+        ay_y = layer.cos_a * ay[1] - layer.sin_a * ay[0]
+        a = longer(
+            wp.vec2(ax_x * il, (ax_y * (1.0 - fy) - ax_x * fx) * iw),
+            wp.vec2(ay_x * il, (ay_y * (1.0 - fy) - ay_x * fx) * iw),
         )
-        alpha = far * layer.mean + (1.0 - far) * near
+        length = wp.length(a)
+        far = wp.clamp((length - FAR_BEGIN) / (FAR_END - FAR_BEGIN), 0.0, 1.0)
+        alpha = layer.mean
+        near = Chord()
+        if far < 1.0:
+            near = chord(
+                wp.vec2(float(px - ix), float(py - iy)),
+                a,
+                int(ix),
+                int(iy),
+                layer.radius,
+                layer.width_variation,
+                layer.seed,
+                phase,
+                layer.wave / il,
+            )
+            alpha = far * layer.mean + (1.0 - far) * near.fraction
 
-    hit = LayerHit()
-    hit.alpha = alpha
-    tangent = wp.normalize(wp.vec2(1.0 - fy, fx))
-    hit.direction = wp.vec2(
-        layer.cos_a * tangent[0] - layer.sin_a * tangent[1], layer.sin_a * tangent[0] + layer.cos_a * tangent[1]
-    )
-    return hit
+        hit = LayerHit()
+        hit.alpha = alpha
+        if wp.static(varied):
+            bits = pcg_hash(random_bits(phase) ^ layer.seed)
+            hit.scratch = near.scratch
+            hit.along = near.along
+            hit.stretch = stretch(near.scratch, near.along, layer.width_variation)
+            # from afar some scratch of the layer, by what it covers
+            if unit_float(bits) * alpha < far * layer.mean or near.scratch == wp.uint32(0):
+                hit.scratch = pcg_hash(bits)
+                hit.along = 0.0
+                hit.stretch = drawn_stretch(unit_float(pcg_hash(hit.scratch)), layer.width_variation, 2.0)
+        tangent = wp.normalize(wp.vec2(1.0 - fy, fx))
+        hit.direction = wp.vec2(
+            layer.cos_a * tangent[0] - layer.sin_a * tangent[1], layer.sin_a * tangent[0] + layer.cos_a * tangent[1]
+        )
+        return hit
+
+    return worley
+
+
+chord_coverage = make_chord(False)
+chord_coverage_varied = make_chord(True)
+worley = make_worley(False)
+worley_varied = make_worley(True)

@@ -26,6 +26,8 @@ _NUMBERS = {
     "curvature": "curvature",
     "widthVariation": "width_variation",
     "depthVariation": "depth_variation",
+    "profileVariation": "profile_variation",
+    "variationLength": "variation_length",
     "ior": "ior",
 }
 _TOKENS = {
@@ -85,6 +87,7 @@ def _layer(reading: Reading, prim: Usd.Prim, name: str, curves: CurveSets) -> La
             patterns=int(get("patterns")),
             cross_angle=float(np.radians(get("crossAngle"))),
             extra=extra,
+            profile_end=_profile_end(reading, prim, name, where),
             **fields,
             **tokens,
         )
@@ -105,6 +108,17 @@ def _profile(reading: Reading, prim: Usd.Prim, name: str, where: str) -> Profile
     reason = f"its profile {targets[0]} is no ScratchProfile" if targets else "has no profile"
     reading.warn(where, f"{reason}; a V groove is used")
     return Profile(path=str(prim.GetPath()))
+
+
+def _profile_end(reading: Reading, prim: Usd.Prim, name: str, where: str) -> Profile | None:
+    """The second profile that a layer's relationship names, if it names one."""
+    targets = prim.GetRelationship(f"{_PREFIX}{name}:profileEnd").GetForwardedTargets()
+    found = reading.stage.GetPrimAtPath(targets[0]) if targets else None
+    if found and found.GetTypeName() == "ScratchProfile":
+        return read_profile(reading, found)
+    if targets:
+        reading.warn(where, f"its profileEnd {targets[0]} is no ScratchProfile; it is ignored")
+    return None
 
 
 def read_profile(reading: Reading, prim: Usd.Prim) -> Profile:

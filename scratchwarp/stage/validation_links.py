@@ -42,8 +42,11 @@ def check_target_paths(relationship: Usd.Relationship, wanted: str) -> Iterator[
 def check_profile_targets(prim: Usd.Prim) -> Iterator[Problem]:
     """Layers whose profile is missing, several, not a ScratchProfile, or outside the Material."""
     stage = prim.GetStage()
-    for layer in layer_names(prim):
-        relationship = prim.GetRelationship(f"{LAYER_PREFIX}{layer}:profile")
+    for relationship in (
+        prim.GetRelationship(f"{LAYER_PREFIX}{layer}:{name}")
+        for layer in layer_names(prim)
+        for name in ("profile", "profileEnd")
+    ):
         path, name = relationship.GetPath(), relationship.GetName()
         yield from check_target_paths(relationship, f"a ScratchProfile below {prim.GetPath()}")
         targets = relationship.GetTargets()

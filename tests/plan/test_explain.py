@@ -46,12 +46,12 @@ def test_prims_are_named_three_at_most():
 
 def test_numbers_and_warnings_follow():
     plan = sw.make_plan(
-        S.scene([S.sphere(8, 16)], [S.scratched(depth_variation=0.5)], [S.dome()]), sw.Settings(width=64, spp=3)
+        S.scene([S.sphere(8, 16)], [S.scratched()], [S.dome()]), sw.Settings(width=64, spp=3, max_error=0.02)
     )
     text = plan.explain()
     assert "image: 64 x 64 pixels" in text and "3 samples each" in text
     assert f"geometry: {len(S.sphere(8, 16).triangles)} triangles in 1 instances" in text
-    assert lines(plan)[-1].startswith("warning: /mat layer 'fine': depthVariation 0.5")
+    assert lines(plan)[-1].startswith("warning: max_error 0.02")
 
 
 def test_shares_are_those_of_effects_that_are_on_and_leave_room_for_the_rest():

@@ -21,7 +21,7 @@ def chords(
 ):
     i = wp.tid()
     phase = wp.randf(wp.rand_init(7, i))
-    out[i] = chord_coverage(p[i], a, cell[i][0], cell[i][1], radius, variation, wp.uint32(77), phase)
+    out[i] = chord_coverage(p[i], a, cell[i][0], cell[i][1], radius, variation, wp.uint32(77), phase, 0.0).fraction
 
 
 @wp.kernel
@@ -75,7 +75,7 @@ def test_chord_equals_the_mean_of_points_along_it():
         p: wp.array(dtype=wp.vec2), cell: wp.array(dtype=wp.vec2i), a: wp.vec2, out: wp.array(dtype=float)
     ):
         i = wp.tid()
-        out[i] = chord_coverage(p[i], a, cell[i][0], cell[i][1], 0.35, 0.0, wp.uint32(77), 0.5)
+        out[i] = chord_coverage(p[i], a, cell[i][0], cell[i][1], 0.35, 0.0, wp.uint32(77), 0.5, 0.0).fraction
 
     def launch(points, cell, axis):
         out = wp.zeros(len(points), dtype=float, device="cpu")

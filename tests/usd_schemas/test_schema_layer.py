@@ -27,6 +27,8 @@ ATTRIBUTES = [
     ("seed", "int", 0, 0, None, None, "none"),
     ("widthVariation", "float", 0.0, 0, 1, None, "none"),
     ("depthVariation", "float", 0.0, 0, 1, None, "none"),
+    ("profileVariation", "float", 0.0, 0, 1, None, "none"),
+    ("variationLength", "float", 0.0, 0, None, None, "micrometer"),
     ("ends", "token", "cap", None, None, "cap mitre", None),
     ("material", "token", "inherit", None, None, "inherit conductor dielectric diffuse", None),
     ("metal", "token", "aluminium", None, None, METALS, None),
@@ -47,7 +49,7 @@ ATTRIBUTES = [
     ("facets", "token", "ashikhminShirley", None, None, "ashikhminShirley ward beckmann ggx", None),
     ("facetRoughness", "float2", (0.3, 0.1), None, None, None, "none"),
 ]
-RELATIONSHIPS = {"profile", "curves"}
+RELATIONSHIPS = {"profile", "profileEnd", "curves"}
 
 
 @pytest.fixture
