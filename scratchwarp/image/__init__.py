@@ -6,6 +6,7 @@ Files:
     npz         layers to and from NumPy archives
     view        scene-linear pixels through a named OpenColorIO view
     png         a film as a picture to look at
+    quick       the same for pictures that follow a slider, in memory
     normals     tangent-space normal maps
     texture     an image file as a texture: linear Rec.709
     writer      write(film, path) chooses by suffix

@@ -86,18 +86,18 @@ class LiveStage:
                 raise ValueError(f"{name!r} is nothing that can be turned")
             checked[name] = known[name].checked(value)
         sections = {known[name].section for name in values}
-        with self._undone_on_error():
+        with self.attempt():
             for name, value in checked.items():
                 controls.author(self._attribute(name, known[name].section), value)
             scene = self._read_again(only_layers=sections <= {"layer", "profile", "wave"})
-        self._known |= {name: replace(known[name], value=value) for name, value in checked.items()}
+        self._known = known | {name: replace(known[name], value=value) for name, value in checked.items()}
         return scene
 
     def place(self, prim: str, matrix: np.ndarray) -> Scene:
         """Put a light or the camera elsewhere: ``matrix`` [4, 4], object to world in metres relative to the scene's
         origin, column vectors. ``prim`` "" is the camera that is looked through. ValueError for any other prim."""
         camera = prim in ("", self.scene.camera.path)
-        with self._undone_on_error():
+        with self.attempt():
             target = self._camera_prim() if camera else self._stage.GetPrimAtPath(prim)
             if not camera and not (target and controls.is_light(target)):
                 raise ValueError(f"{prim!r} is no light that can be moved")
@@ -217,14 +217,16 @@ class LiveStage:
         return replace(self.scene, materials=tuple(materials), curves=tuple(curves.records))
 
     @contextmanager
-    def _undone_on_error(self) -> Iterator[None]:
-        kept, camera = Sdf.Layer.CreateAnonymous("kept"), self._camera
+    def attempt(self) -> Iterator[None]:
+        """Edits made in this block are undone where it raises."""
+        kept = Sdf.Layer.CreateAnonymous("kept")
         kept.TransferContent(self._edits)
+        before = (self.scene, self._camera, self._known, self._reading, self.seconds)
         try:
             yield
         except BaseException:
             self._edits.TransferContent(kept)
-            self._camera = camera
+            self.scene, self._camera, self._known, self._reading, self.seconds = before
             raise
 
 
