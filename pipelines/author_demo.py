@@ -1,7 +1,8 @@
 """Write the demo stages: ball.usda, kettle.usda, panel.usda and plain.usda, and on request those that diffract.
 
-They are the stages of the README's picture, of the tests and of the benchmarks. Nothing in them is a binary file. Fine
-scratches that diffract are on spoon, spoon_star, spoon_window, spoon_dome, disc and vinyl: ask for them with --only.
+They are the stages of the README's picture, of the tests and of the benchmarks. To be asked for with --only: fine
+scratches that diffract on spoon, spoon_star, spoon_window, spoon_dome, disc and vinyl; the materials gold, painted,
+plastic and wood; patterns, shallow and steep; zoom, four decades of distance.
 """
 
 import argparse
@@ -12,10 +13,13 @@ from pathlib import Path
 from .demo_ball import ball
 from .demo_disc import disc
 from .demo_kettle import kettle
+from .demo_materials import gold, painted, plastic, wood
 from .demo_panel import panel
+from .demo_patterns import patterns
 from .demo_plain import plain
 from .demo_spoon import spoon, spoon_dome, spoon_star, spoon_window
 from .demo_vinyl import vinyl
+from .demo_zoom import zoom
 
 __all__ = ["DEFAULT", "STAGES", "author", "ball", "disc", "kettle", "main", "panel", "plain", "spoon", "vinyl"]
 
@@ -30,6 +34,12 @@ STAGES: dict[str, Callable[[Path, float], Path]] = {
     "spoon_dome": spoon_dome,
     "disc": disc,
     "vinyl": vinyl,
+    "gold": gold,
+    "painted": painted,
+    "plastic": plastic,
+    "wood": wood,
+    "patterns": patterns,
+    "zoom": zoom,
 }
 DEFAULT = ("ball", "kettle", "panel", "plain")
 
