@@ -1,7 +1,7 @@
 """A flight from ten metres to a millimetre over a scratched sheet: the same material from haze to single scratches.
 
-The camera looks along a fixed direction, and its distance shrinks by the same factor from frame to frame: frames 1 to 41
-are four decades. The pixels' footprints run from hundreds of scratches to a hundredth of one. The sheet is lit by a
+The camera looks along a fixed direction, and its distance shrinks by the same factor from frame to frame: frames 1 to
+41 are four decades. The pixels' footprints run from hundreds of scratches to a hundredth of one. The sheet is lit by a
 distant light and a dome, so that directions to light and viewer stay the same at the picture's middle. +Y up, metres.
 """
 
@@ -27,19 +27,19 @@ def distance(frame: float) -> float:
 def zoom(path: Path | str, detail: float = 1.0) -> Path:
     """Write the stage; ``detail`` does nothing to a sheet of two triangles but is taken as by the other stages."""
     stage = usd.new_stage(meters_per_unit=1.0)
-    owner = metal(stage, "sheet", "iron", 0.08)
+    owner = metal(stage, "sheet", "iron", 0.03)
     cut = usd.profile(owner, "cut", shape="quartic")
     usd.layer(
-        owner, "fine", cut, order=1, distribution="worley", patterns=4, angleSpread=20.0, length=3000.0, width=12.0,
+        owner, "fine", cut, order=1, distribution="worley", patterns=12, angleSpread=20.0, length=3000.0, width=12.0,
         depth=3.0, coverage=0.4, seed=5,
     )
     usd.layer(
         owner, "deep", cut, order=2, distribution="worley", patterns=6, angleSpread=360.0, length=9000.0, width=40.0,
         depth=14.0, coverage=0.1, seed=6,
     )
-    flat = shapes.sheet(lambda u, v: np.stack([20 * (u - 0.5), 0 * u, 20 * (0.5 - v)], axis=-1), 1, 1)
+    flat = shapes.sheet(lambda u, v: np.stack([4 * (u - 0.5), 0 * u, 4 * (0.5 - v)], axis=-1), 1, 1)
     usd.mesh(stage, "sheet", flat, owner)
-    usd.distant_light(stage, "sun", (0.0, -0.8660254, 0.5), 2.0, 3.0)
+    usd.distant_light(stage, "sun", (0.02, -1.0, 0.05), 4.0, 3.0)
     usd.dome_light(stage, "ambient", 0.5, (0.8, 0.9, 1.0))
     usd.camera(stage, tuple(10.0 * c for c in TOWARDS), (0.0, 0.0, 0.0), lens=135.0)
     camera = UsdGeom.Camera.Get(stage, "/World/camera")
