@@ -4,6 +4,7 @@ Files:
     author_demo               writes the demo stages: demo_ball, demo_kettle, demo_panel, demo_plain, and those that
                               diffract: demo_spoon, demo_disc, demo_vinyl; demo_shapes has their meshes, demo_usd puts
                               them on a stage
+    deformed_highlights       draws anisotropic highlights on normal maps, plain and with facets that follow
     measured_material         fits highlight stencils to a measured BRDF and writes them as a Material
     profile_from_topography   takes a cross-section out of a height map
     scratch_map               makes a seamless normal map of scratches, and (scratch_plate) a stage that shows

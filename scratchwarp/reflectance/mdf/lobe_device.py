@@ -119,6 +119,27 @@ def lobe_pdf(lobe: Lobe, delta: wp.vec2, wo: wp.vec3, wi: wp.vec3) -> float:
 
 
 @wp.func
+def lobe_terms(lobe: Lobe, delta: wp.vec2, wo: wp.vec3, wi: wp.vec3) -> wp.vec2:
+    """(``lobe_eval``, ``lobe_pdf``), of the linear map from one density."""
+    value = float(0.0)
+    pdf = float(0.0)
+    if lobe.kind == SQUARE_ROOT:
+        value = lobe_eval(lobe, delta, wo, wi)
+        pdf = lobe_pdf(lobe, delta, wo, wi)
+    elif wo[2] > 0.0 and wi[2] > 0.0:
+        h = half_vector(wo, wi)
+        p = inverse_deform_point(LINEAR, wp.vec2(h[0], h[1]), delta)
+        z2 = wp.where(wp.dot(delta, delta) > 0.0, 1.0 - wp.dot(p, p), facet_z2(h))
+        if z2 > 0.0:
+            d = lobe_normaliser(lobe) * facet_density(lobe.distribution, p, z2, lobe.x, lobe.y)
+            facing = wp.max(wp.dot(h, wo), 1.0e-20)
+            value = 0.25 * d * h[2] / wp.max(facing * wp.max(wi[2], wo[2]), 1.0e-20)
+            spread = wp.max(facet_density_ratio(lobe, z2), 1.0e-20) * wp.max(deform_jacobian(p, delta), 1.0e-6)
+            pdf = 0.25 * d * h[2] / wp.max(spread * facing, 1.0e-30)
+    return wp.vec2(value, pdf)
+
+
+@wp.func
 def lobe_sample(lobe: Lobe, delta: wp.vec2, wo: wp.vec3, u: wp.vec2, u_lobe: float) -> LobeSample:
     """Draw ``wi``; ``u`` and ``u_lobe`` uniform in [0, 1)."""
     s = LobeSample()
@@ -132,7 +153,8 @@ def lobe_sample(lobe: Lobe, delta: wp.vec2, wo: wp.vec3, u: wp.vec2, u_lobe: flo
             facing = wp.dot(h, wo)
             # a facet seen from behind mirrors to a direction whose half vector is its opposite
             s.wi = wp.where(facing > 0.0, wp.normalize(2.0 * facing * h - wo), wp.vec3(0.0, 0.0, -1.0))
-        s.pdf = lobe_pdf(lobe, delta, wo, s.wi)
+        t = lobe_terms(lobe, delta, wo, s.wi)
+        s.pdf = t[1]
         if s.pdf > 0.0:
-            s.weight = lobe_eval(lobe, delta, wo, s.wi) * s.wi[2] / s.pdf
+            s.weight = t[0] * s.wi[2] / s.pdf
     return s
