@@ -21,6 +21,8 @@ class KernelKey:
         light_multipliers: some light's diffuse or specular multiplier is not 1.
         mesh_lights: some geometry is a light. path: indirect bounces.
         responses: kinds of response over solid angle, of scratches or bases.
+        glints: some scratches diffract. glint_segments: explicit ones; glint_bands: kinds of regular patterns.
+        glint_areas: under lights with an extent. glint_method: slices, closed-form or paper.
     """
 
     lights: tuple[str, ...] = ()
@@ -45,6 +47,11 @@ class KernelKey:
     mesh_lights: bool = False
     path: bool = False
     responses: tuple[str, ...] = ()
+    glints: bool = False
+    glint_segments: bool = False
+    glint_bands: tuple[str, ...] = ()
+    glint_areas: bool = False
+    glint_method: str = "slices"
 
     @property
     def scratches(self) -> bool:

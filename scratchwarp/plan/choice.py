@@ -100,6 +100,7 @@ class EffectPlan:
         settings: every value decided. size: (width, height) of the whole image in pixels.
         window: (x0, x1, y0, y1) of the pixels rendered, the maxima exclusive.
         layers: for each material of the scene its sublayers. tables: what to simulate. responses: the others.
+        waves: for each material what of it diffracts (a ``waves.WavePlan``), or None.
         warnings: what cannot be honoured. seconds: how long planning took.
     """
 
@@ -113,6 +114,7 @@ class EffectPlan:
     seconds: float = 0.0
     numbers: Mapping[str, str] = field(default_factory=dict)
     responses: tuple[ResponsePlan, ...] = ()
+    waves: tuple[Any, ...] = ()
 
     def __post_init__(self) -> None:
         put(self, effects=MappingProxyType(dict(self.effects)), numbers=MappingProxyType(dict(self.numbers)))

@@ -160,7 +160,9 @@ class _Tables:
 def _complaints(material: Material, layer: Layer, fresnel: Any) -> list[str]:
     """What of a layer cannot be honoured."""
     said = []
-    if layer.model in ("diffraction", "groove", "normalMap"):
+    if layer.model == "diffraction" and material.wave is None:
+        said.append(f"{layer.label}: model diffraction needs ScratchWaveAPI on {material.path}; its table is used")
+    if layer.model in ("groove", "normalMap"):
         said.append(f"{layer.label}: model {layer.model} is rendered by its profile table for now")
     surface = material.surface
     if isinstance(surface, PreviewSurface) and layer.material == "inherit" and isinstance(fresnel, optics.Schlick):
@@ -192,6 +194,8 @@ def plan_layers(
         own: list[LayerPlan] = []
         for authored in material.layers if number in used else ():
             layer = replace(authored, model=model) if model else authored
+            if elsewhere(material, layer):
+                continue
             subs = [s for s in sublayers(layer) if allowed(s.distribution)]
             try:
                 fresnel, keeps = reflector(scene, material, layer)

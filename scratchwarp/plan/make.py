@@ -12,7 +12,7 @@ from .effects import EFFECTS, Facts
 from .layers import plan_layers
 from .resolve import resolve
 
-_MISSING = ("diffraction", "grooves")  # authored and planned, but not rendered yet
+_MISSING = ("grooves",)  # authored and planned, but not rendered yet
 Layers = tuple[tuple[LayerPlan, ...], ...]
 
 
@@ -56,8 +56,6 @@ def make_plan(scene: Scene, settings: Settings | None = None, earlier: EffectPla
         f"effects: {name} cannot be forced on in this version" for name in _MISSING if effects[name].enabled
     )
     effects |= {name: replace(effects[name], enabled=False) for name in _MISSING}
-    waved = effects["diffraction"].prims
-    warnings += tuple(f"{prim}: ScratchWaveAPI is rendered by geometric optics in this version" for prim in waved)
     warnings += tuple(
         f"{light.path}: its shadow link is not honoured, everything casts its shadow"
         for light in scene.lights

@@ -1,0 +1,122 @@
+"""What diffraction reads: scratches on the surface, wavelengths, and what scratches reflect by."""
+
+import warp as wp
+
+from ..optics.frames_device import Frame
+from ..scratches.segments_device import Segment
+
+wp.set_module_options({"enable_backward": False})
+
+
+@wp.struct
+class WaveMaterial:
+    """A material whose scratches diffract. ``first``, ``count``: its wavelengths, the longest last; ``bands``: its
+    regular layers in ``GlintArrays.layers``, from ``first_band``."""
+
+    sigma: float  # coherence radius [um]
+    first: int
+    count: int
+    longest: float  # wavelength [um]
+    first_band: int
+    bands: int
+
+
+@wp.struct
+class WaveLayer:
+    """A layer that diffracts.
+
+    Attributes:
+        wave: its material in ``GlintArrays.waves``. reflect: row of ``reflect`` and of ``spectral``; whether the latter
+            has anything to say: ``per_wavelength``.
+        depth_spread, roughness [um].
+        share, share_step, share_count: mean |D|^2 by depth, every ``share_step`` micrometres from 0.
+    """
+
+    wave: int
+    reflect: int
+    per_wavelength: int
+    depth_spread: float
+    roughness: float
+    share: int
+    share_step: float
+    share_count: int
+
+
+@wp.struct
+class GlintArrays:
+    """All of it. ``material``: material -> entry of ``waves``, or -1; ``colors``: linear Rec.709 of each wavelength,
+    those of a material add up to 1; ``reflect[row, cosine]``, ``spectral[row, cosine, wavelength]``: reflectance at
+    even steps of the cosine from 0 to 1; ``shares``: linear Rec.709 of mean |D|^2."""
+
+    material: wp.array(dtype=int)
+    waves: wp.array(dtype=WaveMaterial)
+    layers: wp.array(dtype=WaveLayer)
+    wavelengths: wp.array(dtype=float)  # [um]
+    colors: wp.array(dtype=wp.vec3)
+    reflect: wp.array2d(dtype=wp.vec3)
+    spectral: wp.array3d(dtype=float)
+    shares: wp.array(dtype=wp.vec3)
+    segments: wp.array(dtype=Segment)
+    starts: wp.array(dtype=int)
+    bvh: wp.uint64
+
+
+@wp.struct
+class Strand:
+    """What a footprint sees of one scratch.
+
+    Attributes:
+        frame: x along it, y across, n the shading normal. bend: change of the direction along it, along y and n [1/m].
+        length: of the scratch in the footprint, weighted by it [1/um]: times the width it is a share of the area.
+        mean, variance: of where along it that lies, from the shading point [m], [m^2].
+        width, depth [um]. layer: in ``GlintArrays.layers``.
+    """
+
+    frame: Frame
+    bend_y: float
+    bend_n: float
+    length: float
+    mean: float
+    variance: float
+    width: float
+    depth: float
+    layer: int
+
+
+@wp.struct
+class Glints:
+    """What diffraction adds at a point: radiance, what it leaves of the base, and the shadow rays that it took."""
+
+    radiance: wp.vec3
+    left: wp.vec3
+    rays: float
+
+
+@wp.func
+def reflectance_color(a: GlintArrays, row: int, cosine: float) -> wp.vec3:
+    """Linear Rec.709 reflectance at a cosine."""
+    last = a.reflect.shape[1] - 1
+    at = wp.clamp(cosine, 0.0, 1.0) * float(last)
+    cell = wp.min(int(at), last - 1)
+    t = at - float(cell)
+    return (1.0 - t) * a.reflect[row, cell] + t * a.reflect[row, cell + 1]
+
+
+@wp.func
+def reflectance_at(a: GlintArrays, row: int, wavelength: int, cosine: float) -> float:
+    """Reflectance at a wavelength of the row's material, counted from its first."""
+    last = a.spectral.shape[1] - 1
+    at = wp.clamp(cosine, 0.0, 1.0) * float(last)
+    cell = wp.min(int(at), last - 1)
+    t = at - float(cell)
+    return (1.0 - t) * a.spectral[row, cell, wavelength] + t * a.spectral[row, cell + 1, wavelength]
+
+
+@wp.func
+def depth_share(a: GlintArrays, layer: WaveLayer, depth: float) -> wp.vec3:
+    """Mean |D|^2 of a depth, linear Rec.709."""
+    last = layer.share_count - 1
+    at = wp.clamp(depth / layer.share_step, 0.0, float(last))
+    cell = wp.min(int(at), last - 1)
+    t = at - float(cell)
+    return (1.0 - t) * a.shares[layer.share + cell] + t * a.shares[layer.share + cell + 1]

@@ -1,0 +1,230 @@
+"""Diffraction at a point of the surface: the scratches that a footprint sees, each under every light.
+
+The footprint is a Gaussian of the second moments of the sample's parallelogram, C. A scratch adds as much as the line
+that it is holds of a Gaussian of covariance C + sigma^2 / 2: across it that is the mean of |eta_s|^2 over the footprint
+in closed form, along it pieces of one scratch add up exactly.
+"""
+
+import warp as wp
+
+from ..optics.frames_device import Frame, frame_with_tangent
+from ..reflectance.base_device import CONDUCTOR, DIELECTRIC, SCHLICK, Base
+from ..scratches.segments_device import Plane, plane_of
+from .geometry_device import Geometry, Surface
+from .glint_arrays_device import GlintArrays, Glints, Strand, depth_share
+from .glint_lights_device import make_strand_light
+from .key import KernelKey
+from .lobe_device import luminance
+from .material_device import MaterialArrays
+from .world_device import LightSet
+
+_REACH = wp.constant(3.2)  # standard deviations of the footprint
+_SQRT_HALF = wp.constant(0.70710678)
+_SQRT_TWO_PI = wp.constant(2.5066282746)
+
+
+@wp.struct
+class Stretch:
+    """A Gaussian between two ends: what it holds, its mean and variance there."""
+
+    part: float
+    mean: float
+    variance: float
+
+
+@wp.func
+def between(low: float, high: float) -> Stretch:
+    """A Gaussian of mean 0 and variance 1 cut to [low, high]."""
+    r = Stretch()
+    a = wp.clamp(low, -8.0, 8.0)
+    b = wp.clamp(high, -8.0, 8.0)
+    middle = 0.5 * (a + b)
+    width = b - a
+    if width < 0.2:
+        # flat but for its slope
+        r.part = width / _SQRT_TWO_PI * wp.exp(-0.5 * middle * middle)
+        r.mean = middle * (1.0 - width * width / 12.0)
+        r.variance = width * width / 12.0
+    else:
+        r.part = 0.5 * (wp.erf(b * _SQRT_HALF) - wp.erf(a * _SQRT_HALF))
+        if r.part > 1.0e-6:
+            at_a = wp.exp(-0.5 * a * a) / _SQRT_TWO_PI
+            at_b = wp.exp(-0.5 * b * b) / _SQRT_TWO_PI
+            r.mean = (at_a - at_b) / r.part
+            r.variance = wp.clamp(1.0 + (a * at_a - b * at_b) / r.part - r.mean * r.mean, 0.0, 1.0)
+        else:
+            r.part = 0.0
+    return r
+
+
+@wp.func
+def normal_change(g: Geometry, face: int, plane: Plane, x: float, y: float) -> wp.vec3:
+    """Change of the outward shading normal a metre along (x, y) in a triangle's plane."""
+    c = y / plane.cy
+    b = (x - plane.cx * c) / plane.bx
+    n = g.normals[3 * face]
+    return b * (g.normals[3 * face + 1] - n) + c * (g.normals[3 * face + 2] - n)
+
+
+@wp.func
+def balanced(covered: wp.vec3) -> wp.vec3:
+    """What crowded scratches of ``covered`` = sum of area times |D|^2 leave of the base: e^-covered."""
+    return wp.vec3(
+        wp.exp(-wp.max(covered[0], 0.0)), wp.exp(-wp.max(covered[1], 0.0)), wp.exp(-wp.max(covered[2], 0.0))
+    )
+
+
+@wp.func
+def crowding(covered: wp.vec3) -> wp.vec3:
+    """(1 - e^-x) / x: what crowded scratches reflect of what they would alone."""
+    r = wp.vec3(1.0, 1.0, 1.0)
+    for c in range(3):
+        x = covered[c]
+        if x > 1.0e-3:
+            r[c] = (1.0 - wp.exp(-x)) / x
+        else:
+            r[c] = 1.0 - 0.5 * wp.max(x, 0.0)
+    return r
+
+
+@wp.func
+def less_specular(base: Base, left: wp.vec3) -> Base:
+    """A base of which diffraction leaves the specular part ``left``; that of a conductor is scaled outside."""
+    b = base
+    if base.fresnel == SCHLICK:
+        b.f0 = wp.cw_mul(base.f0, left)
+        b.f90 = wp.cw_mul(base.f90, left)
+    elif base.fresnel == DIELECTRIC:
+        b.specular = base.specular * luminance(left)
+    return b
+
+
+@wp.func
+def left_of_base(base: Base, left: wp.vec3) -> wp.vec3:
+    """The factor that ``less_specular`` could not put into the base."""
+    return wp.where(base.fresnel == CONDUCTOR, left, wp.vec3(1.0, 1.0, 1.0))
+
+
+def make_glints(key: KernelKey, transmittance):
+    """Device function: what diffraction adds at a point, compiled for ``key``."""
+    strand_light = make_strand_light(key, transmittance)
+
+    @wp.func
+    def strand_of(
+        g: Geometry, a: GlintArrays, number: int, s: Surface, n: wp.vec3, step_x: wp.vec3, step_y: wp.vec3, sigma: float
+    ) -> Strand:
+        """Piece ``number`` under the footprint; ``sigma`` [m]; length 0 where it has none of it."""
+        r = Strand()
+        piece = a.segments[number]
+        face = piece.triangle
+        half = wp.length(piece.half)
+        plane = plane_of(g.points[3 * face], g.points[3 * face + 1], g.points[3 * face + 2])
+        if half > 0.0 and plane.cy > 0.0:
+            d = s.p - plane.origin
+            rel = wp.vec2(
+                float(wp.float64(wp.dot(d, plane.x)) - piece.middle[0]),
+                float(wp.float64(wp.dot(d, plane.y)) - piece.middle[1]),
+            )
+            tx = piece.half[0] / half
+            ty = piece.half[1] / half
+            t = tx * plane.x + ty * plane.y
+            v = tx * plane.y - ty * plane.x
+            xt = wp.dot(step_x, t)
+            xv = wp.dot(step_x, v)
+            yt = wp.dot(step_y, t)
+            yv = wp.dot(step_y, v)
+            soft = 0.5 * sigma * sigma
+            c_tt = (xt * xt + yt * yt) / 12.0 + soft
+            c_tv = (xt * xv + yt * yv) / 12.0
+            c_vv = (xv * xv + yv * yv) / 12.0 + soft
+            along = tx * rel[0] + ty * rel[1]
+            across = tx * rel[1] - ty * rel[0]
+            if across * across < _REACH * _REACH * c_vv:
+                mean = -c_tv * across / c_vv
+                deviation = wp.sqrt(wp.max(c_tt - c_tv * c_tv / c_vv, soft))
+                held = between((-half - along - mean) / deviation, (half - along - mean) / deviation)
+                if held.part > 1.0e-5:
+                    density = wp.exp(-0.5 * across * across / c_vv) / (_SQRT_TWO_PI * wp.sqrt(c_vv))
+                    r.length = 1.0e-6 * density * held.part
+                    r.mean = mean + deviation * held.mean
+                    r.variance = deviation * deviation * held.variance
+                    # direction where the footprint sees it; the normal is that of the shading point
+                    at = wp.clamp((along + r.mean) / half, -1.0, 1.0)
+                    turn = 0.5 * ((1.0 - at) * piece.turn_a + (1.0 + at) * piece.turn_b)
+                    cosine = wp.cos(turn)
+                    sine = wp.sin(turn)
+                    tangent = cosine * t + sine * v
+                    aside = cosine * v - sine * t
+                    r.frame = frame_with_tangent(n, tangent)
+                    side = wp.where(wp.dot(aside, r.frame.y) < 0.0, -1.0, 1.0)
+                    r.bend_y = side * (piece.turn_b - piece.turn_a) / (2.0 * half)
+                    dn = normal_change(g, face, plane, cosine * tx - sine * ty, cosine * ty + sine * tx)
+                    outward = wp.where(wp.dot(plane.n, n) < 0.0, -1.0, 1.0)
+                    r.bend_n = -outward * wp.dot(dn, tangent)
+                    r.width = piece.width
+                    r.depth = piece.depth
+                    r.layer = piece.layer
+        return r
+
+    @wp.func
+    def glints(
+        a: GlintArrays,
+        lights: LightSet,
+        g: Geometry,
+        arrays: MaterialArrays,
+        s: Surface,
+        frame: Frame,
+        p: wp.vec3,
+        wo: wp.vec3,
+        step_x: wp.vec3,
+        step_y: wp.vec3,
+        closeness: float,
+        index: wp.uint32,
+        dimension: int,
+        seed: wp.uint32,
+    ) -> Glints:
+        """At ``s`` of a material that diffracts; ``p``: the point moved off the surface."""
+        r = Glints()
+        total = wp.vec3(0.0, 0.0, 0.0)
+        covered = wp.vec3(0.0, 0.0, 0.0)
+        number = a.material[s.material]
+        wave = a.waves[number]
+        known = wp.zeros(shape=8, dtype=wp.vec4)
+        if wp.static(key.glint_segments):
+            if a.bvh != wp.uint64(0):
+                sigma = 1.0e-6 * wave.sigma
+                reach = wp.vec3(0.0, 0.0, 0.0)
+                for c in range(3):
+                    square = (step_x[c] * step_x[c] + step_y[c] * step_y[c]) / 12.0 + 0.5 * sigma * sigma
+                    reach[c] = _REACH * wp.sqrt(square)
+                query = wp.bvh_query_aabb(a.bvh, s.p - reach, s.p + reach)
+                found = int(0)
+                while wp.bvh_query_next(query, found):
+                    if a.layers[a.segments[found].layer].wave == number:
+                        strand = strand_of(g, a, found, s, frame.n, step_x, step_y, sigma)
+                        if strand.length > 0.0:
+                            layer = a.layers[strand.layer]
+                            covered += strand.length * strand.width * depth_share(a, layer, strand.depth)
+                            lit = strand_light(
+                                a,
+                                strand,
+                                lights,
+                                g,
+                                arrays,
+                                p,
+                                s.ng,
+                                s.instance,
+                                wo,
+                                closeness,
+                                known,
+                                index,
+                                dimension,
+                                seed,
+                            )
+                            total += wp.vec3(lit[0], lit[1], lit[2])
+                            r.rays += lit[3]
+        r.left = balanced(covered)
+        r.radiance = wp.cw_mul(total, crowding(covered))
+        return r
+
+    return glints

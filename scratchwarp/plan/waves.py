@@ -1,0 +1,81 @@
+"""Which layers diffract, and what they reflect by at each wavelength."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from .. import optics
+from ..optics import metals
+from ..scene import Layer, Material, Scene, ScratchSurface, Wave
+
+# Patterns of regular pitch have a closed form; all others become explicit scratches.
+REGULAR = ("linear", "concentric", "spiral", "crosshatch")
+
+
+@dataclass(frozen=True, eq=False)
+class WaveLayerPlan:
+    """A layer that diffracts; ``fresnel``: an ``optics`` reflector; ``index``: wavelength [nm] -> (n, k), or None where
+    its reflectance is known for R, G and B alone."""
+
+    layer: Layer
+    fresnel: Any
+    index: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]] | None
+
+
+@dataclass(frozen=True, eq=False)
+class WavePlan:
+    """What diffracts of a material."""
+
+    wave: Wave
+    layers: tuple[WaveLayerPlan, ...]
+
+
+def diffracts(material: Material, layer: Layer) -> bool:
+    """Whether a layer is rendered by wave optics: ScratchWaveAPI on the Material and model auto or diffraction."""
+    return material.wave is not None and layer.model in ("auto", "diffraction")
+
+
+def wave_index(material: Material, layer: Layer) -> Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]] | None:
+    """The refractive index by wavelength: that of ScratchWaveAPI, else of the measured metal that the scratch is of."""
+    wave = material.wave
+    if wave is not None and wave.ior is not None:
+        rows = wave.ior
+        return lambda at: (np.interp(at, rows[:, 0], rows[:, 1]), np.interp(at, rows[:, 0], rows[:, 2]))
+    if layer.fresnel == "mirror":
+        return None
+    source: Any = layer if layer.material == "conductor" else material.surface
+    inherits = layer.material == "inherit" and isinstance(source, ScratchSurface) and source.base == "conductor"
+    if (layer.material == "conductor" or inherits) and source.metal != "custom":
+        return lambda at: metals.index(source.metal, at)
+    return None
+
+
+def plan_waves(
+    scene: Scene, wanted: Callable[[Material, Layer], bool], reflector: Callable[..., tuple[Any, bool]]
+) -> tuple[WavePlan | None, ...]:
+    """For each material what of it diffracts, None where nothing does.
+
+    ``wanted(material, layer)``: whether it may; ``reflector``: as ``plan.layers.reflector``. Lambert scratches do not.
+    """
+    used = {m for i in scene.instances for m in i.materials}
+    made: list[WavePlan | None] = []
+    for number, material in enumerate(scene.materials):
+        own = []
+        for layer in material.layers if number in used else ():
+            if wanted(material, layer) and layer.width > 0.0:
+                fresnel = reflector(scene, material, layer)[0]
+                if fresnel is not None:
+                    own.append(WaveLayerPlan(layer, fresnel, wave_index(material, layer)))
+        made.append(WavePlan(material.wave, tuple(own)) if own and material.wave is not None else None)
+    return tuple(made)
+
+
+def reflectances(plan: WaveLayerPlan, cosines: np.ndarray, wavelengths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(linear Rec.709 ``[c, 3]``, by wavelength [nm] ``[c, n]``) of a layer; the latter ones where it is not known."""
+    if plan.index is None:
+        color = np.broadcast_to(plan.fresnel.reflectance(cosines), (len(cosines), 3))
+        return color, np.ones((len(cosines), len(wavelengths)))
+    r_s, r_p = optics.fresnel.amplitudes(cosines[:, None], *plan.index(wavelengths))
+    return np.ones((len(cosines), 3)), 0.5 * (np.abs(r_s) ** 2 + np.abs(r_p) ** 2)
