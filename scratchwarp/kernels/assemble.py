@@ -17,7 +17,7 @@ from ..reflectance.texture import pack_textures
 from ..scene import MeshLight, Scene
 from ..scene.digest import digest
 from ..scratches import KINDS, curves
-from . import geometry, material
+from . import geometry, glints, material
 from .camera_device import CameraData
 from .key import KernelKey
 from .parts import Parts
@@ -72,8 +72,22 @@ def kernel_key(scene: Scene, plan: EffectPlan) -> KernelKey:
         light_multipliers=on("lights.multipliers"),
         mesh_lights="mesh" in kinds,
         path=on("indirect"),
+        **_glint_fields(plan),
         responses=tuple(n for n, r in RESPONSES.items() if on(r.effect) and (distributions or r.base)),
     )
+
+
+def _glint_fields(plan: EffectPlan) -> dict[str, Any]:
+    """What of diffraction is compiled."""
+    if not plan.on("diffraction"):
+        return {}
+    method = "closed-form" if plan.on("diffraction.closedForm") else "slices"
+    return {
+        "glints": True,
+        "glint_segments": plan.on("diffraction.segments"),
+        "glint_areas": plan.on("diffraction.areaLights"),
+        "glint_method": "paper" if plan.on("diffraction.paperLights") else method,
+    }
 
 
 def camera_data(scene: Scene, plan: EffectPlan) -> CameraData:
@@ -171,5 +185,11 @@ def assemble(
     used = plan.responses if key.responses else ()
     scratch_set.responses = parts.part("responses", (digest(used),), lambda: pack_responses(used, device))
     scratch_set.variations = material.pack_variations(plan.layers if key.variation else (), device)
+    sparkle = parts.part(
+        "glints",
+        (digest(scene.materials, key), scene.curves, scene.meshes, placed) if key.glints else (),
+        lambda: glints.pack(scene, plan, key, shape, device),
+    )
+    scratch_set.glints = sparkle.arrays
     inputs = (camera_data(scene, plan), shape.arrays, stuff.arrays, scratch_set, light_set)
-    return Assembled(key, inputs, (shape, stuff, packed, sets), packed.warnings)
+    return Assembled(key, inputs, (shape, stuff, packed, sets, sparkle), packed.warnings)

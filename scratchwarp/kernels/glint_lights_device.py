@@ -7,7 +7,7 @@ each the light's intervals of xi_2 are integrated exactly (``interval_device``, 
 import warp as wp
 
 from ..lights.light_device import Light, LightArrays
-from ..optics.frames_device import Frame, to_local, to_world
+from ..optics.frames_device import to_local, to_world
 from ..optics.sobol_device import sobol_2d
 from ..reflectance.diffraction.interval_device import (
     behind_edge,
@@ -254,9 +254,9 @@ def make_strand_light(key: KernelKey, transmittance):
         for k in range(count):
             p = corners[k]
             q = corners[wp.where(k + 1 < count, k + 1, 0)]
-            at = p[0] / wp.max(wp.length(p), 1.0e-30)
-            low = wp.min(low, at)
-            high = wp.max(high, at)
+            reached = p[0] / wp.max(wp.length(p), 1.0e-30)
+            low = wp.min(low, reached)
+            high = wp.max(high, reached)
             turn = edge_turn(p, q)
             if turn < 2.0:
                 low = wp.min(low, turn)

@@ -67,23 +67,25 @@ def normal_change(g: Geometry, face: int, plane: Plane, x: float, y: float) -> w
 
 
 @wp.func
-def balanced(covered: wp.vec3) -> wp.vec3:
-    """What crowded scratches of ``covered`` = sum of area times |D|^2 leave of the base: e^-covered."""
-    return wp.vec3(
-        wp.exp(-wp.max(covered[0], 0.0)), wp.exp(-wp.max(covered[1], 0.0)), wp.exp(-wp.max(covered[2], 0.0))
-    )
+def uncovered(bare: wp.vec3, share: wp.vec3) -> wp.vec3:
+    """What a further scratch of ``share`` = area times |D|^2 leaves of what others left ``bare``."""
+    r = bare
+    for c in range(3):
+        r[c] = bare[c] * (1.0 - wp.clamp(share[c], 0.0, 1.0))
+    return r
 
 
 @wp.func
-def crowding(covered: wp.vec3) -> wp.vec3:
-    """(1 - e^-x) / x: what crowded scratches reflect of what they would alone."""
+def crowding(bare: wp.vec3, covered: wp.vec3) -> wp.vec3:
+    """What scratches that leave ``bare`` reflect of the sum ``covered`` of what each would alone: (1 - bare) / covered.
+
+    One scratch of area a takes a |D|^2 from the base, exactly; many at random leave e^{-sum} and stand in each other's
+    place. Together they and the base return 1, however many they are.
+    """
     r = wp.vec3(1.0, 1.0, 1.0)
     for c in range(3):
-        x = covered[c]
-        if x > 1.0e-3:
-            r[c] = (1.0 - wp.exp(-x)) / x
-        else:
-            r[c] = 1.0 - 0.5 * wp.max(x, 0.0)
+        if covered[c] > 1.0e-4:
+            r[c] = wp.min((1.0 - bare[c]) / covered[c], 1.0)
     return r
 
 
@@ -187,6 +189,7 @@ def make_glints(key: KernelKey, transmittance):
         r = Glints()
         total = wp.vec3(0.0, 0.0, 0.0)
         covered = wp.vec3(0.0, 0.0, 0.0)
+        bare = wp.vec3(1.0, 1.0, 1.0)
         number = a.material[s.material]
         wave = a.waves[number]
         known = wp.zeros(shape=8, dtype=wp.vec4)
@@ -204,7 +207,9 @@ def make_glints(key: KernelKey, transmittance):
                         strand = strand_of(g, a, found, s, frame.n, step_x, step_y, sigma)
                         if strand.length > 0.0:
                             layer = a.layers[strand.layer]
-                            covered += strand.length * strand.width * depth_share(a, layer, strand.depth)
+                            share = strand.length * strand.width * depth_share(a, layer, strand.depth)
+                            covered += share
+                            bare = uncovered(bare, share)
                             lit = strand_light(
                                 a,
                                 strand,
@@ -223,8 +228,8 @@ def make_glints(key: KernelKey, transmittance):
                             )
                             total += wp.vec3(lit[0], lit[1], lit[2])
                             r.rays += lit[3]
-        r.left = balanced(covered)
-        r.radiance = wp.cw_mul(total, crowding(covered))
+        r.left = bare
+        r.radiance = wp.cw_mul(total, crowding(bare, covered))
         return r
 
     return glints

@@ -23,6 +23,7 @@ from .geometry_device import (
     intersect,
     lifted,
 )
+from .glints_device import left_of_base, less_specular, make_glints
 from .key import KernelKey
 from .lobe_device import Lobe, largest, luminance
 from .material_device import MaterialArrays
@@ -47,6 +48,7 @@ def make_kernel(key: KernelKey):
     base_at, opacity_at, emission_at, frame_at, rotated = make_base_at(key)
     transmittance = make_transmittance(key, opacity_at)
     direct, seen = make_direct(key, transmittance)
+    glints = make_glints(key, transmittance) if key.glints else None
     choose, scatter, glow, pass_through, pass_probability = make_bounce(key, rotated, emission_at)
 
     @wp.kernel(module="unique", module_options={"enable_backward": False})
@@ -101,6 +103,7 @@ def make_kernel(key: KernelKey):
             while alive == 1:
                 entered = depth
                 lit = wp.vec3(0.0, 0.0, 0.0)  # what this surface reflects
+                diffracted = wp.vec3(0.0, 0.0, 0.0)
                 s = Surface()
                 s.face = -1
                 known = wp.vec4(0.0, 0.0, 0.0, 0.0)
@@ -200,6 +203,35 @@ def make_kernel(key: KernelKey):
                         glowing = glow(arrays, lights, m, s, origin, direction, gone + s.t, lobe, pdf, phi, depth)
                         found += wp.cw_mul(throughput, glowing)
                         if depth < window.max_depth:
+                            p = lifted(g, s)
+                            kept = wp.vec3(1.0, 1.0, 1.0)
+                            if wp.static(key.glints):
+                                if scratches.glints.material[s.material] >= 0:
+                                    closeness = float(0.0)
+                                    if wp.static(not key.orthographic):
+                                        closeness = 1.0 / wp.max(traveled, 1.0e-20)
+                                    sparkle = glints(
+                                        scratches.glints,
+                                        lights,
+                                        g,
+                                        arrays,
+                                        s,
+                                        frame,
+                                        p,
+                                        wo,
+                                        step_x,
+                                        step_y,
+                                        closeness,
+                                        index,
+                                        pair + wp.static(OWN_PAIRS),
+                                        seed,
+                                    )
+                                    diffracted = wp.cw_mul(throughput, sparkle.radiance)
+                                    if wp.static(key.opacity):
+                                        diffracted = diffracted * ((1.0 - through) / wp.max(1.0 - passing, 1.0e-6))
+                                    rays += int(sparkle.rays)
+                                    kept = left_of_base(base, sparkle.left)
+                                    base = less_specular(base, sparkle.left)
                             lobe = choose(
                                 g,
                                 scratches,
@@ -217,7 +249,6 @@ def make_kernel(key: KernelKey):
                             )
                             if depth == 0:
                                 first_scratch = lobe.scratch
-                            p = lifted(g, s)
                             instance = s.instance
                             received = direct(
                                 g,
@@ -233,6 +264,9 @@ def make_kernel(key: KernelKey):
                                 pair + wp.static(OWN_PAIRS),
                                 seed,
                             )
+                            if wp.static(key.glints):
+                                if lobe.scratch == 0:
+                                    throughput = wp.cw_mul(throughput, kept)
                             lit = wp.cw_mul(throughput, wp.vec3(received[0], received[1], received[2]))
                             rays += int(received[3])
                             out = scatter(scratches.tables, scratches.responses, lobe, s, u_base, u_more[1])
@@ -265,9 +299,10 @@ def make_kernel(key: KernelKey):
                                 pdf = out.pdf
                                 phi = out.phi
                                 alive = 1
-                color += found + lit
+                color += found + lit + diffracted
                 # light and glow that the camera sees directly belong to no lobe
                 part = lit + wp.where(entered > 0, 1.0, 0.0) * found
+                part_scratch += diffracted
                 if first_scratch > 0:
                     part_scratch += part
                 else:

@@ -8,6 +8,7 @@ from ..reflectance.responses.response_device import ResponseArrays
 from ..scratches.curves_device import SegmentArrays
 from ..scratches.layer_device import LayerData
 from ..scratches.variation_device import VariationData
+from .glint_arrays_device import GlintArrays
 
 wp.set_module_options({"enable_backward": False})
 
@@ -24,10 +25,12 @@ class LightSet:
 
 @wp.struct
 class ScratchSet:
-    """All sublayers, the segments of explicit ones, and the profile tables and responses they reflect by."""
+    """All sublayers, the segments of explicit ones, the profile tables and responses they reflect by, and what of them
+    diffracts."""
 
     layers: wp.array(dtype=LayerData)
     variations: wp.array(dtype=VariationData)  # of each layer, where scratches of some layer differ
     segments: SegmentArrays
     tables: TableArrays
     responses: ResponseArrays
+    glints: GlintArrays

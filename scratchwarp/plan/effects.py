@@ -15,13 +15,15 @@ from ..scene import Material, PreviewSurface, Scene, ScratchSurface, Settings, T
 from ..scratches import KINDS
 from .choice import LayerPlan, ResponsePlan, TablePlan
 from .occlusion import can_occlude
+from .wave_effects import WAVE_EFFECTS
 
 Answer = tuple[bool, str, tuple[str, ...]]
 
 
 @dataclass(frozen=True, eq=False)
 class Facts:
-    """What rules look at: the scene, its used materials, the planned layers and tables, the decided settings."""
+    """What rules look at: the scene, its used materials, the planned layers, tables, responses and what diffracts of
+    each material, the decided settings."""
 
     scene: Scene
     settings: Settings
@@ -29,6 +31,7 @@ class Facts:
     layers: tuple[tuple[LayerPlan, ...], ...]
     tables: tuple[TablePlan, ...]
     responses: tuple[ResponsePlan, ...] = ()
+    waves: tuple[Any, ...] = ()
 
     @property
     def every(self) -> list[LayerPlan]:
@@ -99,13 +102,6 @@ def _variation(f: Facts) -> Answer:
         f"scratches of one layer differ: {len(tables)} tables stand for them",
         "the scratches of each layer are alike",
     )
-
-
-def _diffraction(f: Facts) -> Answer:
-    asked = [m.path for m in f.materials if m.wave is not None]
-    if asked:
-        return False, "asked for by ScratchWaveAPI, rendered by geometric optics in this version", tuple(asked)
-    return False, "no material has ScratchWaveAPI", ()
 
 
 def _grooves(f: Facts) -> Answer:
@@ -184,7 +180,7 @@ EFFECTS: dict[str, Callable[[Facts], Answer]] = {
     **{response.effect: _response(name) for name, response in RESPONSES.items()},
     "scratches.sumCoverage": _sum_coverage,
     "scratches.variation": _variation,
-    "diffraction": _diffraction,
+    **WAVE_EFFECTS,
     "grooves": _grooves,
     "base.preview": lambda f: _surfaces(
         f, lambda s: isinstance(s, PreviewSurface), "UsdPreviewSurface bases", "no UsdPreviewSurface base"

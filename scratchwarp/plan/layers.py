@@ -179,11 +179,13 @@ def plan_layers(
     max_error: float | None = None,
     known: tuple[TablePlan, ...] = (),
     model: str | None = None,
+    elsewhere: Callable[[Material, Layer], bool] = lambda material, layer: False,
 ) -> tuple[tuple[tuple[LayerPlan, ...], ...], tuple[TablePlan, ...], tuple[ResponsePlan, ...], tuple[str, ...]]:
     """(sublayers of each material, tables to simulate, responses over solid angle, warnings).
 
     ``allowed(distribution)``: whether it may be on; ``max_error``: of a table's albedos, None for the default;
-    ``known``: tables planned earlier for the same ``max_error``; ``model``: in place of every layer's own.
+    ``known``: tables planned earlier for the same ``max_error``; ``model``: in place of every layer's own;
+    ``elsewhere``: whether a layer is rendered by other means than sublayers.
     """
     tables = _Tables(scene, max_error, known)
     responses = models.Responses()

@@ -5,12 +5,13 @@ from dataclasses import replace
 
 from ..lights.registry import MODELS
 from ..reflectance.responses import RESPONSES
-from ..scene import Scene, Settings
+from ..scene import Layer, Material, Scene, Settings
 from .choice import EffectChoice, EffectPlan, LayerPlan, ResponsePlan, TablePlan
 from .cost import shares
 from .effects import EFFECTS, Facts
-from .layers import plan_layers
+from .layers import plan_layers, reflector
 from .resolve import resolve
+from .waves import diffracts, plan_waves
 
 _MISSING = ("grooves",)  # authored and planned, but not rendered yet
 Layers = tuple[tuple[LayerPlan, ...], ...]
@@ -32,15 +33,19 @@ def make_plan(scene: Scene, settings: Settings | None = None, earlier: EffectPla
     def allowed(distribution: str) -> bool:
         return forced.get("scratches", True) and forced.get(f"scratches.{distribution}", True)
 
+    def waved(material: Material, layer: Layer) -> bool:
+        return forced.get("diffraction", True) and diffracts(material, layer)
+
     try:
         known = earlier.tables if earlier is not None and earlier.settings.max_error == decided.max_error else ()
         layers, tables, responses, warnings = plan_layers(
-            scene, allowed, decided.max_error, known, decided.model
+            scene, allowed, decided.max_error, known, decided.model, waved
         )
+        waves = plan_waves(scene, waved, reflector, decided.model)
     except ValueError as error:
         raise ValueError(f"{scene.path}: {error}") from None
     used = sorted({m for instance in scene.instances for m in instance.materials})
-    facts = Facts(scene, decided, tuple(scene.materials[i] for i in used), layers, tables, responses)
+    facts = Facts(scene, decided, tuple(scene.materials[i] for i in used), layers, tables, responses, waves)
     effects = {}
     for name, rule in EFFECTS.items():
         enabled, reason, prims = rule(facts)
@@ -80,6 +85,7 @@ def make_plan(scene: Scene, settings: Settings | None = None, earlier: EffectPla
         warnings=warnings,
         numbers=numbers,
         responses=responses,
+        waves=waves,
         seconds=time.perf_counter() - start,
     )
 

@@ -1,7 +1,7 @@
 """Which layers diffract, and what they reflect by at each wavelength."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -53,17 +53,22 @@ def wave_index(material: Material, layer: Layer) -> Callable[[np.ndarray], tuple
 
 
 def plan_waves(
-    scene: Scene, wanted: Callable[[Material, Layer], bool], reflector: Callable[..., tuple[Any, bool]]
+    scene: Scene,
+    wanted: Callable[[Material, Layer], bool],
+    reflector: Callable[..., tuple[Any, bool]],
+    model: str | None = None,
 ) -> tuple[WavePlan | None, ...]:
     """For each material what of it diffracts, None where nothing does.
 
-    ``wanted(material, layer)``: whether it may; ``reflector``: as ``plan.layers.reflector``. Lambert scratches do not.
+    ``wanted(material, layer)``: whether it may; ``reflector``: as ``plan.layers.reflector``; ``model``: in place of
+    every layer's own. Lambert scratches do not diffract.
     """
     used = {m for i in scene.instances for m in i.materials}
     made: list[WavePlan | None] = []
     for number, material in enumerate(scene.materials):
         own = []
-        for layer in material.layers if number in used else ():
+        for authored in material.layers if number in used else ():
+            layer = replace(authored, model=model) if model else authored
             if wanted(material, layer) and layer.width > 0.0:
                 fresnel = reflector(scene, material, layer)[0]
                 if fresnel is not None:

@@ -27,6 +27,9 @@ def aovs(sums: Mapping[str, np.ndarray], scene: Scene, samples: int) -> dict[str
         return np.asarray(value, np.float32)
 
     color, base, scratches = mean("color"), mean("base"), mean("scratches")
+    shown = in_gamut(color)
+    scratches = scratches + (shown - color)
+    color = shown
     normal = over_hits("normal")
     length = np.linalg.norm(normal, axis=-1, keepdims=True)
     normal = np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)
@@ -48,6 +51,21 @@ def aovs(sums: Mapping[str, np.ndarray], scene: Scene, samples: int) -> dict[str
         "emission": (color - base - scratches).astype(np.float32),
         "variance": (spread / np.maximum(good - 1.0, 1.0)).astype(np.float32),
     }
+
+
+def in_gamut(color: np.ndarray) -> np.ndarray:
+    """Colours more saturated than Rec.709 (only diffraction makes them) moved towards the grey of their luminance, just
+    far enough that no component is negative. ``[..., 3]``; others keep their bits."""
+    low = color.min(axis=-1)
+    outside = low < 0.0
+    if not outside.any():
+        return color
+    luminance = np.float32(0.2126) * color[..., 0] + np.float32(0.7152) * color[..., 1]
+    luminance = np.maximum(luminance + np.float32(0.0722) * color[..., 2], 0.0)
+    span = np.maximum(luminance - low, np.float32(1e-30))
+    keep = np.where(outside, luminance / span, np.float32(1.0))[..., None].astype(np.float32)
+    mapped = np.maximum(luminance[..., None] + keep * (color - luminance[..., None]), np.float32(0.0))
+    return np.where(outside[..., None], mapped, color).astype(np.float32)
 
 
 def metadata(scene: Scene, plan: EffectPlan, digest: str, wall: float, cpu: float) -> dict[str, Any]:

@@ -50,7 +50,14 @@ def _shifted(plane: Plane, p: wp.vec3d, inward: wp.vec3) -> wp.vec2d:
 
 @wp.func
 def _piece(
-    s: Stretches, i: int, face: int, start: wp.vec2d, end: wp.vec2d, tangent_a: wp.vec2, tangent_b: wp.vec2, scale: float
+    s: Stretches,
+    i: int,
+    face: int,
+    start: wp.vec2d,
+    end: wp.vec2d,
+    tangent_a: wp.vec2,
+    tangent_b: wp.vec2,
+    scale: float,
 ) -> Segment:
     r = Segment()
     chord = end - start

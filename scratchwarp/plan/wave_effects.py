@@ -1,0 +1,57 @@
+"""How the effects of wave optics are decided; rules as in ``effects``."""
+
+from collections.abc import Callable
+from typing import Any
+
+from ..scene import Layer
+from .waves import REGULAR
+
+Answer = tuple[bool, str, tuple[str, ...]]
+
+
+def _layers(f: Any) -> list[Layer]:
+    return [p.layer for own in f.waves if own is not None for p in own.layers]
+
+
+def _answer(labels: list[str], on: str, off: str) -> Answer:
+    unique = tuple(dict.fromkeys(labels))
+    return bool(unique), on if unique else off, unique
+
+
+def _diffraction(f: Any) -> Answer:
+    lit = _layers(f)
+    if not lit and any(m.wave is not None for m in f.materials):
+        return False, "ScratchWaveAPI is there, but no visible layer of model auto or diffraction", ()
+    return _answer([x.label for x in lit], "scratches under ScratchWaveAPI", "no material has ScratchWaveAPI")
+
+
+def _segments(f: Any) -> Answer:
+    found = [x.label for x in _layers(f) if x.distribution not in REGULAR]
+    return _answer(found, "scratches one by one, cut to the triangles", "no scratch that diffracts lies by itself")
+
+
+def _bands(f: Any) -> Answer:
+    found = [x.label for x in _layers(f) if x.distribution in REGULAR]
+    return _answer(found, "regular patterns, summed in closed form", "no regular pattern diffracts")
+
+
+def _areas(f: Any) -> Answer:
+    if not _layers(f):
+        return False, "nothing diffracts", ()
+    found = [x.path for x in f.scene.lights if not getattr(x, "point", False) and getattr(x, "angle", 1.0) > 0.0]
+    return _answer(found, "lights with an extent, integrated slice by slice", "every light is a point or a direction")
+
+
+def _never(text: str) -> Callable[[Any], Answer]:
+    return lambda f: (False, text, ())
+
+
+WAVE_EFFECTS: dict[str, Callable[[Any], Answer]] = {
+    "diffraction": _diffraction,
+    "diffraction.segments": _segments,
+    "diffraction.bands": _bands,
+    "diffraction.areaLights": _areas,
+    "diffraction.closedForm": _never("lights in 8 slices; on: the slice xi_1 = 0 alone (Velinov 2018 Eq. 27)"),
+    "diffraction.paperLights": _never("exact sine integral; on: Velinov 2018 Eq. 27 with Eq. 29"),
+}
+"""Effect -> its rule."""

@@ -1,0 +1,71 @@
+"""Scratches laid at random over a piece of the pattern plane, as polylines in uv."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from ..scene import Curves, Layer
+
+# More than this many would not fit into memory together with their pieces.
+MOST = 20_000_000
+_POINTS_A_RADIAN = 8.0
+
+
+def random_scratches(
+    layer: Layer, low: tuple[float, float], high: tuple[float, float], scale: tuple[float, float]
+) -> Curves:
+    """Scratches of one layer over the rectangle of uv from ``low`` to ``high``.
+
+    ``scale``: units of the layer's lengths a unit of u and of v (1, 1 in space uv; micrometres in space surface).
+    As many as ``density`` or ``coverage`` (1 - e^-(number times area)) call for; their middles are spread evenly at
+    random, their angles over ``angle_spread`` (all where distribution random has none), their widths and depths over
+    the layer's variations. Raises ValueError where that would be more than ``MOST``.
+    """
+    size = np.array([(high[0] - low[0]) * scale[0], (high[1] - low[1]) * scale[1]])
+    length, width = max(layer.length, layer.width), layer.width
+    # those that only reach into the rectangle from outside count, too
+    margin = np.minimum(0.5 * length, size)
+    area = float(np.prod(size + 2.0 * margin))
+    if layer.density > 0.0:
+        number = layer.density * area * (1e-6 if layer.space == "surface" else 1.0)
+    else:
+        number = -math.log(max(1.0 - layer.coverage, 1e-4)) * area / (length * width)
+    if number > MOST:
+        raise ValueError(
+            f"{layer.label}: its coverage or density calls for {number:.3g} scratches, more than {MOST}; make them "
+            "longer or wider, or use a regular distribution"
+        )
+    rng = np.random.default_rng([layer.seed & 0xFFFFFFFF, *layer.name.encode()])
+    n = int(rng.poisson(number)) if number < 1e6 else round(number)
+    middle = -margin + rng.random((n, 2)) * (size + 2.0 * margin)
+    spread = layer.angle_spread
+    if layer.distribution == "random" and spread == 0.0:
+        spread = math.pi
+    angle = layer.angle + spread * (rng.random(n) - 0.5)
+    turn = layer.curvature
+    points = 2 + math.ceil(abs(turn) * _POINTS_A_RADIAN)
+    at = np.linspace(-0.5, 0.5, points)
+    if turn == 0.0:
+        along, across = length * at, np.zeros(points)
+    else:
+        along, across = length / turn * np.sin(turn * at), length / turn * (1.0 - np.cos(turn * at))
+    cosine, sine = np.cos(angle)[:, None], np.sin(angle)[:, None]
+    x = middle[:, :1] + cosine * along - sine * across
+    y = middle[:, 1:] + sine * along + cosine * across
+    uv = np.stack([low[0] + x / scale[0], low[1] + y / scale[1], np.zeros_like(x)], -1).reshape(-1, 3)
+
+    def sizes(mean: float, variation: float) -> Any:
+        return np.repeat(mean * (1.0 + variation * (2.0 * rng.random(n) - 1.0)), points)
+
+    unit = "uv" if layer.space == "uv" else "um"
+    return Curves(
+        path=layer.label,
+        points=uv,
+        counts=np.full(n, points, np.int32),
+        widths=sizes(layer.width, layer.width_variation),
+        depths=sizes(layer.depth, layer.depth_variation),
+        space="uv",
+        width_unit=unit,
+        depth_unit=unit,
+    )

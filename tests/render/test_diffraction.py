@@ -1,0 +1,179 @@
+"""Diffraction in rendered images against the float64 library and in closed form."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import scratchwarp as sw
+from scratchwarp import diffraction
+from scratchwarp.reflectance.diffraction.color import spectral_samples
+from scratchwarp.scene import (
+    Camera,
+    Curves,
+    DistantLight,
+    DomeLight,
+    Layer,
+    Material,
+    PreviewSurface,
+    Profile,
+    RectLight,
+    ScratchSurface,
+    SphereLight,
+    Wave,
+)
+
+from . import scenes
+
+SIGMA = 60.0
+LENGTH = 0.004
+"""Of the one scratch [m]."""
+# one kernel for all tests: its code does not depend on which of these lights are there
+LIGHTS = {f"lights.{name}": True for name in ("distant", "sphere", "rect", "dome")}
+COMPILED = {**LIGHTS, "diffraction.areaLights": True, "shadows": False}
+
+
+def black():
+    """A base that reflects nothing."""
+    return PreviewSurface(diffuse_color=(0, 0, 0), specular_color=(0, 0, 0), use_specular_workflow=True)
+
+
+def waves(**fields):
+    """A material whose scratches of mirror floor diffract."""
+    surface = fields.pop("surface", black())
+    wave = fields.pop("wave", Wave(coherence_radius=SIGMA))
+    fields = {"distribution": "curves", "curves": (0,), "fresnel": "mirror", "width": 3.0, "depth": 1.0, **fields}
+    layer = Layer(name="fine", prim="/mat", profile=Profile(path="/mat/box", shape="rectangle"), **fields)
+    return Material(path="/mat", surface=surface, layers=(layer,), wave=wave)
+
+
+def stroke(angle, width=3.0, depth=1.0, away=1.0, length=LENGTH):
+    """One straight scratch through the middle of the view."""
+    end = 0.5 * length * np.array([np.cos(angle), np.sin(angle), 0.0])
+    points = np.array([-end, end]) - [0, 0, away]
+    return Curves("/c", points, np.array([2]), np.full(2, width), np.full(2, depth))
+
+
+def straight_down(size=0.006):
+    """A view along -z of a square of ``size`` metres, all rays parallel."""
+    return Camera(
+        path="/cam",
+        transform=np.eye(4),
+        horizontal_aperture=size,
+        vertical_aperture=size,
+        projection="orthographic",
+    )
+
+
+def render(material, light, curves, spp=1, size=16, camera=None, effects=None, **settings):
+    # a closed box is convex, so it needs no shadow rays
+    floor = scenes.place(0, 0, (0, 0, -1))
+    cam = camera or straight_down()
+    world = scenes.scene([scenes.plane(0.02)], [material], [light], instances=[floor], cam=cam, curves=curves)
+    asked = {"width": size, "height": size, "spp": spp, "filter": "box", **settings}
+    return sw.render(world, sw.make_plan(world, sw.Settings(effects={**COMPILED, **(effects or {})}, **asked)))
+
+
+def flux(film, size=0.006):
+    """Radiance of the scratch summed over the area of the view [m^2]."""
+    return film["scratches"].astype(float).mean((0, 1)) * size**2
+
+
+def toward(azimuth, elevation):
+    """A direction above the surface."""
+    return np.array(
+        [np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)]
+    )
+
+
+@pytest.mark.parametrize("angle, depth", [(0.3, 1.0), (2.0, 2.7)])
+def test_distant_light_against_the_library(angle, depth):
+    """All light of one scratch: f E cos theta sqrt(pi) sigma length. The end of the scratch and the raster of the
+    Gaussian footprint (3.2 of its deviations are kept: 1.4e-3) and the seam of two triangles set the tolerance."""
+    omega_i = toward(angle + np.pi / 2, 1.2)
+    light = DistantLight(path="/l", radiance=np.full(3, 2.0), direction=-omega_i)
+    film = render(waves(), light, (stroke(angle, depth=depth),), spp=64)
+    at, weights = spectral_samples(16)
+    f = diffraction.brdf(omega_i, np.array([0, 0, 1.0]), diffraction.Scratch(3.0, depth, angle, 0.0, SIGMA), at)
+    expected = 2.0 * omega_i[2] * np.sqrt(np.pi) * SIGMA * 1e-6 * LENGTH * (f @ weights)
+    # gamut mapping keeps the luminance
+    assert flux(film) @ [0.2126, 0.7152, 0.0722] == pytest.approx(expected @ [0.2126, 0.7152, 0.0722], rel=1e-2, abs=0.0)
+
+
+@pytest.mark.parametrize("kind", ["sphere", "rect"])
+@pytest.mark.parametrize("offset", [0.0, 0.004, 0.012])
+def test_area_lights_against_the_library(kind, offset):
+    """A light 1 m away whose middle is ``offset`` off the line xi_1 = 0: inside, at its edge, beyond. A scratch of 0.2
+    mm, along which directions hardly change, so that spreading them over the footprint may leave 2 %."""
+    angle, size = 0.5, 0.01
+    u, v = np.array([np.cos(angle), np.sin(angle), 0.0]), np.array([-np.sin(angle), np.cos(angle), 0.0])
+    center = 0.6 * v + np.array([0, 0, 0.8]) + offset * u
+    ex, ey = size * u, size * np.cross(center, u)
+    if kind == "sphere":
+        light = SphereLight(path="/l", radiance=np.full(3, 2.0), center=center - [0, 0, 1], radius=size)
+        known = diffraction.SphereLight(center, size)
+    else:
+        normal = -center / np.linalg.norm(center)
+        light = RectLight(path="/l", radiance=np.full(3, 2.0), center=center - [0, 0, 1], ex=ex, ey=ey, normal=normal)
+        known = diffraction.PolygonLight(center + np.array([-ex - ey, ex - ey, ex + ey, -ex + ey]))
+    length = 2e-4
+    # a box of samples: which part of a textured or shadowed light is seen is drawn at random, this one is even
+    film = render(waves(), light, (stroke(angle, length=length),), spp=64, camera=straight_down(0.001))
+    at, weights = spectral_samples(16)
+    one = diffraction.Scratch(3.0, 1.0, angle, 0.0, SIGMA)
+    f = diffraction.radiance(known, np.array([0, 0, 1.0]), one, at, slices=16)
+    expected = 2.0 * np.sqrt(np.pi) * SIGMA * 1e-6 * length * (f @ weights)
+    y = np.array([0.2126, 0.7152, 0.0722])
+    assert flux(film, 0.001) @ y == pytest.approx(expected @ y, rel=0.03, abs=0.0)
+
+
+@pytest.mark.parametrize("coverage", [0.05, 0.5, 0.9])
+def test_furnace(coverage):
+    """Scratches on a mirror under an even white dome: base and scratches return at most what arrives, and nearly all
+    of it but what diffracts below the horizon (lobe fraction of 3 um scratches: 0.97)."""
+    mirror = PreviewSurface(diffuse_color=(1, 1, 1), metallic=1.0, roughness=0.0)
+    material = waves(surface=mirror, distribution="random", coverage=coverage, length=500.0, depth_variation=0.5)
+    film = render(material, scenes.dome(), (), size=4, spp=1)
+    color = film["color"]
+    assert np.isfinite(color).all() and color.min() >= 0.0
+    assert color.max() <= 1.0 + 1e-3
+    assert color.min() >= 0.85
+    assert film["scratches"].mean() > 0.3 * coverage
+
+
+def test_scale_and_place_do_not_matter():
+    """The same picture when the scene is described in other units is the stage's business; here: far from the origin
+    of the layout, and half of a scratch on either side of the plane's diagonal."""
+    light = DistantLight(path="/l", radiance=np.full(3, 2.0), direction=-toward(np.pi / 4 + np.pi / 2, 1.2))
+    whole = render(waves(), light, (stroke(np.pi / 4),))
+    along = stroke(np.pi / 4)
+    middle = along.points.mean(0)
+    halves = replace(
+        along,
+        points=np.array([along.points[0], middle, middle, along.points[1]]),
+        counts=np.array([2, 2]),
+        widths=np.full(4, 3.0),
+        depths=np.full(4, 1.0),
+    )
+    split = render(waves(), light, (halves,))
+    np.testing.assert_allclose(split["color"], whole["color"], rtol=1.5e-2, atol=1e-4 * whole["color"].max())
+
+
+def test_nothing_is_built_without_the_schema():
+    material = replace(waves(surface=ScratchSurface()), wave=None)
+    light = DistantLight(path="/l", radiance=np.ones(3), direction=np.array([0, 0, -1.0]))
+    world = scenes.scene([scenes.plane(0.02)], [material], [light], curves=(stroke(0.1),))
+    plan = sw.make_plan(world, sw.Settings(width=4, height=4))
+    assert not any(choice.enabled for name, choice in plan.effects.items() if name.startswith("diffraction"))
+    assert "no material has ScratchWaveAPI" in plan.explain()
+
+
+def test_directions_build_no_area_light_code():
+    light = DistantLight(path="/l", radiance=np.ones(3), direction=np.array([0, 0, -1.0]))
+    world = scenes.scene([scenes.plane(0.02)], [waves()], [light], curves=(stroke(0.1),))
+    plan = sw.make_plan(world, sw.Settings(width=4, height=4))
+    assert plan.on("diffraction.segments") and not plan.on("diffraction.areaLights")
+    assert not any(p for own in plan.layers for p in own) and not plan.tables
+    assert plan.effects["diffraction.areaLights"].reason == "every light is a point or a direction"
+    dome = replace(world, lights=(DomeLight(path="/d", radiance=np.ones(3)),))
+    assert sw.make_plan(dome, sw.Settings(width=4, height=4)).on("diffraction.areaLights")
