@@ -109,17 +109,21 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
         arrays.segments, arrays.starts = segments.segments, segments.starts
         arrays.bvh = segments.bvh.id if segments.bvh is not None else 0
     which = np.full(max(len(scene.materials), 1), -1, np.int32)
-    waves, lams, colors = [], [], []
+    waves: list[Any] = []
+    lams: list[np.ndarray] = []
+    colors: list[np.ndarray] = []
     for number, (m, w) in enumerate(diffracting):
         which[m] = number
         record: Any = WaveMaterial()
         at, weights = wavelengths_of(w.wave)
-        record.sigma, record.first, record.count = w.wave.coherence_radius, sum(map(len, lams)), len(at)
+        record.sigma, record.first, record.count = w.wave.coherence_radius, sum(len(x) for x in lams), len(at)
         record.longest = float(at[-1])
         waves.append(record)
         lams.append(at)
         colors.append(weights)
-    layers, shares, reflect = [], [], []
+    layers: list[Any] = []
+    shares: list[np.ndarray] = []
+    reflect: list[np.ndarray] = []
     most = max(len(at) for at in lams)
     spectral = np.ones((len(numbers), COSINES, most), np.float32)
     for (m, k), number in numbers.items():
@@ -149,4 +153,3 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
     arrays.spectral = floats(spectral, float)
     arrays.shares = floats(np.concatenate(shares), wp.vec3)
     return PackedGlints(arrays, segments)
-

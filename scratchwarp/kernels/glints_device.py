@@ -1,6 +1,7 @@
 """Diffraction at a point of the surface: the scratches that a footprint sees, each under every light.
 
-The footprint is a Gaussian of the second moments of the sample's parallelogram, C. A scratch adds as much as the line
+The footprint is a Gaussian of twice the second moments of the sample's parallelogram, C, so that neighbouring samples
+overlap and no scratch is missed between them. A scratch adds as much as the line
 that it is holds of a Gaussian of covariance C + sigma^2 / 2: across it that is the mean of |eta_s|^2 over the footprint
 in closed form, along it pieces of one scratch add up exactly.
 """
@@ -136,9 +137,9 @@ def make_glints(key: KernelKey, transmittance):
             yt = wp.dot(step_y, t)
             yv = wp.dot(step_y, v)
             soft = 0.5 * sigma * sigma
-            c_tt = (xt * xt + yt * yt) / 12.0 + soft
-            c_tv = (xt * xv + yt * yv) / 12.0
-            c_vv = (xv * xv + yv * yv) / 12.0 + soft
+            c_tt = (xt * xt + yt * yt) / 6.0 + soft
+            c_tv = (xt * xv + yt * yv) / 6.0
+            c_vv = (xv * xv + yv * yv) / 6.0 + soft
             along = tx * rel[0] + ty * rel[1]
             across = tx * rel[1] - ty * rel[0]
             if across * across < _REACH * _REACH * c_vv:
@@ -198,7 +199,7 @@ def make_glints(key: KernelKey, transmittance):
                 sigma = 1.0e-6 * wave.sigma
                 reach = wp.vec3(0.0, 0.0, 0.0)
                 for c in range(3):
-                    square = (step_x[c] * step_x[c] + step_y[c] * step_y[c]) / 12.0 + 0.5 * sigma * sigma
+                    square = (step_x[c] * step_x[c] + step_y[c] * step_y[c]) / 6.0 + 0.5 * sigma * sigma
                     reach[c] = _REACH * wp.sqrt(square)
                 query = wp.bvh_query_aabb(a.bvh, s.p - reach, s.p + reach)
                 found = int(0)

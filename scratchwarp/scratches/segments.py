@@ -158,7 +158,7 @@ def build(
     rows = rows[np.argsort(rows["triangle"], kind="stable")]
     starts = np.searchsorted(rows["triangle"], np.arange(len(corners) + 1)).astype(np.int32)
     count = len(rows)
-    segments = wp.array(rows if count else np.zeros(1, row_type.numpy_dtype()), dtype=Segment, device=device)
+    segments: Any = wp.array(rows if count else np.zeros(1, row_type.numpy_dtype()), dtype=Segment, device=device)
     hierarchy = None
     if with_bvh and count:
         lower: Any = wp.empty(count, dtype=wp.vec3, device=device)
@@ -195,6 +195,6 @@ def _cut(stroke: Stroke, f: Any, mesh: wp.Mesh, slack: float, device: str) -> Ar
     if starts[-1] == 0:
         return np.zeros(0, row_type.numpy_dtype())
     out: Any = wp.empty(int(starts[-1]), dtype=Segment, device=device)
-    begin = wp.array(starts[:-1].astype(np.int32), dtype=int, device=device)
+    begin: Any = wp.array(starts[:-1].astype(np.int32), dtype=int, device=device)
     wp.launch(kernel, n, inputs=[*given, begin, counts, out], device=device)
     return out.numpy()

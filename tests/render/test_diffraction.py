@@ -26,6 +26,7 @@ from scratchwarp.scene import (
 from . import scenes
 
 SIGMA = 60.0
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 LENGTH = 0.004
 """Of the one scratch [m]."""
 # one kernel for all tests: its code does not depend on which of these lights are there
@@ -81,9 +82,7 @@ def flux(film, size=0.006):
 
 def toward(azimuth, elevation):
     """A direction above the surface."""
-    return np.array(
-        [np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)]
-    )
+    return np.array([np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)])
 
 
 @pytest.mark.parametrize("angle, depth", [(0.3, 1.0), (2.0, 2.7)])
@@ -97,7 +96,7 @@ def test_distant_light_against_the_library(angle, depth):
     f = diffraction.brdf(omega_i, np.array([0, 0, 1.0]), diffraction.Scratch(3.0, depth, angle, 0.0, SIGMA), at)
     expected = 2.0 * omega_i[2] * np.sqrt(np.pi) * SIGMA * 1e-6 * LENGTH * (f @ weights)
     # gamut mapping keeps the luminance
-    assert flux(film) @ [0.2126, 0.7152, 0.0722] == pytest.approx(expected @ [0.2126, 0.7152, 0.0722], rel=1e-2, abs=0.0)
+    assert flux(film) @ LUMINANCE == pytest.approx(expected @ LUMINANCE, rel=1e-2, abs=0.0)
 
 
 @pytest.mark.parametrize("kind", ["sphere", "rect"])
@@ -123,8 +122,7 @@ def test_area_lights_against_the_library(kind, offset):
     one = diffraction.Scratch(3.0, 1.0, angle, 0.0, SIGMA)
     f = diffraction.radiance(known, np.array([0, 0, 1.0]), one, at, slices=16)
     expected = 2.0 * np.sqrt(np.pi) * SIGMA * 1e-6 * length * (f @ weights)
-    y = np.array([0.2126, 0.7152, 0.0722])
-    assert flux(film, 0.001) @ y == pytest.approx(expected @ y, rel=0.03, abs=0.0)
+    assert flux(film, 0.001) @ LUMINANCE == pytest.approx(expected @ LUMINANCE, rel=0.03, abs=0.0)
 
 
 @pytest.mark.parametrize("coverage", [0.05, 0.5, 0.9])

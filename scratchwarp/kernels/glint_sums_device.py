@@ -1,0 +1,189 @@
+"""Sums over wavelengths and slices: what one scratch sends to the viewer of the slices of a light."""
+
+import warp as wp
+
+from ..reflectance.diffraction.response_device import (
+    across_integral,
+    across_integral_paper,
+    along_variance,
+    depth_response,
+    sinc2,
+)
+from .glint_arrays_device import GlintArrays, Strand, WaveLayer, WaveMaterial, reflectance_at, reflectance_color
+
+_vec8 = wp.types.vector(length=8, dtype=float)
+# Gauss-Legendre over [0, 1].
+_NODES = wp.constant(
+    _vec8(
+        0.0198550718, 0.1016667613, 0.2372337950, 0.4082826788, 0.5917173212, 0.7627662050, 0.8983332387, 0.9801449282
+    )
+)
+_WEIGHTS = wp.constant(
+    _vec8(
+        0.0506142681, 0.1111905172, 0.1568533229, 0.1813418917, 0.1813418917, 0.1568533229, 0.1111905172, 0.0506142681
+    )
+)
+_SLICES = wp.constant(8)
+REACH = wp.constant(3.3)  # standard deviations
+_SQRT_PI = wp.constant(1.7724538509)
+_SQRT_TWO_PI = wp.constant(2.5066282746)
+
+
+@wp.struct
+class View:
+    """A strand from a viewer: omega_o in its frame, its layer and material, the spread of xi_1 over the footprint and
+    its shift, and the longest standard deviation of xi_1 among the wavelengths."""
+
+    o: wp.vec3
+    spread: float
+    shift: float
+    deviation: float
+
+
+@wp.struct
+class Slices:
+    """Which slices: ``count`` from u0 to u1; ``whole``: they stand for the whole Gaussian. ``round``: the light begins
+    and ends round."""
+
+    count: int
+    whole: int
+    u0: float
+    u1: float
+    round: int
+
+
+@wp.func
+def slice_at(s: Slices, i: int) -> wp.vec2:
+    """(u, weight) of a slice; the weight of a whole Gaussian adds up to 1, else to the range of u."""
+    r = wp.vec2(s.u0, 1.0)
+    if s.whole == 1:
+        if s.count == 2:
+            r = wp.vec2(wp.where(i == 0, s.u0, s.u1), 0.5)
+    else:
+        t = _NODES[i]
+        w = _WEIGHTS[i] * (s.u1 - s.u0)
+        if s.round == 1:
+            # takes out the square roots with which a round light begins and ends
+            w = w * 6.0 * t * (1.0 - t)
+            t = t * t * (3.0 - 2.0 * t)
+        r = wp.vec2(s.u0 + t * (s.u1 - s.u0), w)
+    return r
+
+
+@wp.func
+def cosine_of(o: wp.vec3, u: float, psi: float) -> float:
+    """Cosine of half the angle between the viewer and the direction (u, psi)."""
+    s = wp.sqrt(wp.max((1.0 - u) * (1.0 + u), 0.0))
+    i = wp.vec3(u, s * wp.sin(psi), s * wp.cos(psi))
+    return wp.sqrt(wp.max(0.5 + 0.5 * wp.dot(i, o), 0.0))
+
+
+@wp.func
+def as_xi2(o: wp.vec3, u: float, psi: wp.vec4) -> wp.vec4:
+    """Intervals of psi as intervals of xi_2."""
+    s = wp.sqrt(wp.max((1.0 - u) * (1.0 + u), 0.0))
+    r = wp.vec4(0.0, 0.0, 0.0, 0.0)
+    if psi[1] > psi[0]:
+        r[0] = o[1] + s * wp.sin(psi[0])
+        r[1] = r[0] + 2.0 * s * wp.cos(0.5 * (psi[0] + psi[1])) * wp.sin(0.5 * (psi[1] - psi[0]))
+    if psi[3] > psi[2]:
+        r[2] = o[1] + s * wp.sin(psi[2])
+        r[3] = o[1] + s * wp.sin(psi[3])
+    return r
+
+
+@wp.func
+def point_light(
+    a: GlintArrays, wave: WaveMaterial, layer: WaveLayer, strand: Strand, view: View, i: wp.vec3
+) -> wp.vec3:
+    """Irradiance 1 from one direction, times the cosine."""
+    total = wp.vec3(0.0, 0.0, 0.0)
+    x = i[0] + view.o[0] + view.shift
+    xi2 = i[1] + view.o[1]
+    cosine = wp.sqrt(wp.max(0.5 + 0.5 * wp.dot(i, view.o), 0.0))
+    for k in range(wave.count):
+        wavelength = a.wavelengths[wave.first + k]
+        ratio = strand.width / wavelength
+        own = along_variance(wave.sigma, wavelength)
+        variance = own + view.spread
+        value = wp.sqrt(own / variance) * wp.exp(-0.5 * x * x / variance) * ratio * ratio * sinc2(ratio * xi2)
+        value *= depth_response(strand.depth, wavelength, 2.0, layer.depth_spread, layer.roughness)
+        if layer.per_wavelength == 1:
+            value *= reflectance_at(a, layer.reflect, k, cosine)
+        total += value * a.colors[wave.first + k]
+    total = total * (2.0 * _SQRT_PI * wave.sigma * strand.length * i[2])
+    if layer.per_wavelength == 0:
+        total = wp.cw_mul(total, reflectance_color(a, layer.reflect, cosine))
+    return total
+
+
+def make_glint_sums(method: str):
+    """(slices of a light, radiance under them): "slices", "closed-form" or "paper"."""
+    single = method != "slices"
+    across = across_integral_paper if method == "paper" else across_integral
+
+    @wp.func
+    def xi1_slices(view: View, low: float, high: float, rounded: int) -> Slices:
+        """The slices to take of a light that fills u from ``low`` to ``high``."""
+        r = Slices()
+        middle = -view.o[0] - view.shift
+        if wp.static(single):
+            if middle > low and middle < high:
+                r.count = 1
+                r.whole = 1
+                r.u0 = middle
+        else:
+            reach = REACH * view.deviation
+            a = wp.max(low, middle - reach)
+            b = wp.min(high, middle + reach)
+            if a < b:
+                r.u0 = a
+                r.u1 = b
+                r.round = rounded
+                r.count = _SLICES
+                if a > low and b < high:
+                    r.whole = 1
+                    r.count = 2
+                    r.u0 = middle - view.deviation
+                    r.u1 = middle + view.deviation
+        return r
+
+    @wp.func
+    def radiance_of(
+        a: GlintArrays,
+        wave: WaveMaterial,
+        layer: WaveLayer,
+        strand: Strand,
+        view: View,
+        whole: int,
+        count: int,
+        places: wp.array(dtype=wp.vec3),
+        cuts: wp.array(dtype=wp.vec4),
+    ) -> wp.vec3:
+        """Sum over wavelengths and slices. ``places``: (xi_1, weight, cosine of the half angle); ``cuts``: intervals
+        of xi_2."""
+        total = wp.vec3(0.0, 0.0, 0.0)
+        for k in range(wave.count):
+            wavelength = a.wavelengths[wave.first + k]
+            ratio = strand.width / wavelength
+            own = along_variance(wave.sigma, wavelength)
+            variance = own + view.spread
+            value = float(0.0)
+            for i in range(count):
+                along = places[i][1] * _SQRT_TWO_PI * wp.sqrt(own)
+                if whole == 0:
+                    x = places[i][0]
+                    along = places[i][1] * wp.sqrt(own / variance) * wp.exp(-0.5 * x * x / variance)
+                c = cuts[i]
+                seen = across(ratio, c[0], c[1]) + across(ratio, c[2], c[3])
+                if layer.per_wavelength == 1:
+                    seen *= reflectance_at(a, layer.reflect, k, places[i][2])
+                value += along * seen
+            value *= ratio * ratio * depth_response(strand.depth, wavelength, 2.0, layer.depth_spread, layer.roughness)
+            total += value * a.colors[wave.first + k]
+        total = total * (2.0 * _SQRT_PI * wave.sigma * strand.length)
+        if layer.per_wavelength == 0:
+            total = wp.cw_mul(total, reflectance_color(a, layer.reflect, places[count / 2][2]))
+        return total
+
+    return xi1_slices, radiance_of
