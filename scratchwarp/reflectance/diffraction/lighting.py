@@ -34,9 +34,10 @@ def radiance(
     light broadcast. Methods, all with the same geometry, clipped at the horizon:
 
     - "slices": the integral over xi_2 in closed form (exact Si, or the table of a profile; numerical where ``phase`` is
-      "angle-dependent") at Gauss nodes over xi_1. ``slices`` is the most nodes of one step of that integral: two or
-      three in all where the light covers the Gaussian (error 1e-6), a few steps of 4, 3, 2, 1 where it begins, ends or
-      has a corner there (error 1e-3 in the median, 1e-2 at worst). More than 4 refine everywhere; 64 leave 1e-6.
+      "angle-dependent") at up to ``slices`` values of xi_1, two where the light covers the Gaussian (error 1e-6). Where
+      it begins, ends or has corners there, four leave 1e-3 in the median and 1e-2 at worst; a few percent where a
+      polygon's corner and an edge along the line xi_1 = 0 meet there. More than 4 refine everywhere, in as many steps
+      as that needs; 64 leave 1e-6.
     - "closed-form": the same at xi_1 = 0 alone (Velinov et al. 2018 Eq. 27, exact Si): only for lights whose edges are
       more than 10 / (sigma k) away from the line xi_1 = 0.
     - "closed-form-paper": Eq. 27 with Eq. 29; may be negative. Rectangles and small angles only.

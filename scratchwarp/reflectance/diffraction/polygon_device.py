@@ -10,6 +10,7 @@ through the first point that the outline has there.
 
 import warp as wp
 
+from .few_device import Marks, add_mark
 from .quadrature_device import Rules
 from .real_device import ONE, TWO, ZERO, real, vec3
 from .scratch_device import WaveScratch, to_scratch
@@ -134,6 +135,62 @@ def polygon_breaks(light: PolygonView, s: WaveScratch, after: real) -> Breaks:
                         start = at
                         known = 1
                     r = _spread(r, start, at, after)
+    return r
+
+
+@wp.func
+def _mark(marks: Marks, u: real, first: real, last: real) -> Marks:
+    r = marks
+    r.low = wp.min(r.low, u)
+    r.high = wp.max(r.high, u)
+    if u > first and u < last:
+        r = add_mark(r, u)
+    return r
+
+
+@wp.func
+def _direction(a: vec3) -> real:
+    """u of a point."""
+    return a[0] / wp.max(wp.length(a), real(1.0e-300))
+
+
+@wp.func
+def _mark_turn(marks: Marks, a: vec3, b: vec3, first: real, last: real) -> Marks:
+    """Take in the point at which an edge turns in u."""
+    r = marks
+    m = wp.cross(a, b - a)
+    grows = m[1] * a[2] - m[2] * a[1]
+    if (grows > ZERO) != (m[1] * b[2] - m[2] * b[1] > ZERO):
+        length = wp.length(m)
+        if length > ZERO:
+            turn = wp.sign(grows) * wp.sqrt(m[1] * m[1] + m[2] * m[2]) / length
+            r = _mark(r, turn, first, last)
+    return r
+
+
+@wp.func
+def polygon_marks(light: PolygonView, s: WaveScratch, first: real, last: real) -> Marks:
+    """The extent of the part above the horizon, and where its outline has corners or turns between ``first`` and
+    ``last``."""
+    r = Marks()
+    r.low = TWO
+    r.high = -TWO
+    known = int(0)
+    start = vec3(ZERO, ZERO, ZERO)
+    if light.flat == 0:
+        for i in range(light.count):
+            e = clipped_edge(light, s, i)
+            if e.inside != 0:
+                r = _mark(r, _direction(e.a), first, last)
+                r = _mark_turn(r, e.a, e.b, first, last)
+                if e.leaves != 0:
+                    r = _mark(r, _direction(e.b), first, last)
+                if e.enters != 0 or e.leaves != 0:
+                    at = wp.where(e.enters != 0, e.a, e.b)
+                    if known == 0:
+                        start = at
+                        known = 1
+                    r = _mark_turn(r, start, at, first, last)
     return r
 
 

@@ -2,7 +2,7 @@
 
 L = 2 e^{-s_b^2 / sigma^2} integral over xi_1 of e^{-(sigma k xi_1)^2} g(xi_1), g the integral over xi_2 in closed form.
 With x = sigma k xi_1 the Gaussian is e^{-x^2}. Velinov et al. 2018 Eq. 27 takes g at x = 0, which fails where the light
-ends within a few x. Here a light that covers |x| < 3 takes two or three Gauss-Hermite nodes. Else the range between two
+ends within a few x. Up to four slices are placed by ``few_device``. More are for reference: the range between two
 corners of the light is walked from where the Gaussian is greatest, in steps over which it falls by e^{-4} or so, with
 Gauss-Legendre nodes, fewer in each further step, and closer where the light begins or ends round.
 """
@@ -13,6 +13,7 @@ from typing import Any
 import warp as wp
 
 from .complex_device import power
+from .few_device import make_few
 from .quadrature_device import Rules, rule_node, rule_weight
 from .real_device import HALF, ONE, PI, TWO, ZERO, real
 from .scratch_device import along_amplitude, along_share, is_finite, offset_weight
@@ -24,15 +25,12 @@ CLOSED_FORM = wp.constant(1)
 """Method: the slice xi_1 = 0 alone, Eq. 27."""
 
 _SQRT_PI = wp.constant(real(1.7724538509055159))
-_COVERED = wp.constant(real(3.0))  # erfc(3) = 2e-5
-_WELL_COVERED = wp.constant(real(3.4))
-_FEW = wp.constant(4)  # slices up to which accuracy is about 1e-3 and worth no more nodes
+_FEW = wp.constant(4)  # slices up to which ``few_device`` places them
 _STEP = wp.constant(real(1.5))
 _FALL = wp.constant(real(1.5))
 _CLOSE = wp.constant(real(0.25))  # to the peak: too little for a step of its own
 _SHORT = wp.constant(real(0.8))  # what one step takes with both of its ends round
-_LAST = wp.constant(real(12.0))  # e^{-12}, of the greatest, is where few slices stop
-_LAST_FINE = wp.constant(real(30.0))
+_LAST = wp.constant(real(30.0))  # e^{-30}, of the greatest, is where it stops
 _END_NODES = wp.constant(16)  # for each slice, where ends make the lobe wide and fringed
 
 
@@ -80,31 +78,6 @@ def edge_node(t: real, begins: int, ends: int) -> Node:
 
 
 @wp.func
-def hermite_nodes(p: Range) -> int:
-    """Gauss-Hermite nodes that are enough where the range covers the Gaussian; 0: it does not, or more are wanted."""
-    reach = wp.min(-p.x0, p.x1)
-    n = int(0)
-    if p.slices <= _FEW and reach >= _COVERED:
-        n = wp.min(p.slices, wp.where(reach >= _WELL_COVERED, 2, 3))
-    return n
-
-
-@wp.func
-def hermite_node(n: int, i: int) -> Node:
-    """Node i of the Gauss-Hermite rule of n = 1, 2 or 3."""
-    r = Node()
-    if n == 1:
-        r.weight = _SQRT_PI
-    elif n == 2:
-        r.x = real(0.7071067811865476) * real(2 * i - 1)
-        r.weight = HALF * _SQRT_PI
-    else:
-        r.x = real(1.224744871391589) * real(i - 1)
-        r.weight = _SQRT_PI / wp.where(i == 1, real(1.5), real(6.0))
-    return r
-
-
-@wp.func
 def step_nodes(slices: int, step: int) -> int:
     """Nodes in the first, second, third, ... step away from the greatest value."""
     n = slices
@@ -123,9 +96,10 @@ def at_edge(p: Range, x: real) -> int:
     return wp.where((x == p.x0 and p.begins != 0) or (x == p.x1 and p.ends != 0), 1, 0)
 
 
-def make_radiance(view: Any, breaks: Callable[..., Any], cut: Callable[..., Any]) -> Any:
+def make_radiance(view: Any, breaks: Callable[..., Any], marks: Callable[..., Any], cut: Callable[..., Any]) -> Any:
     """The device function ``radiance(light, lobe, tables, rules, method, slices)`` of a kind of light: its struct,
-    where it begins, ends or has corners in u, and what a slice cuts out of it."""
+    where it begins, ends or has corners in u, the same all at once, and what a slice cuts out of it."""
+    few = make_few(view, marks, cut)
 
     @wp.func
     def at(light: view, lobe: Lobe, tables: LobeTables, rules: Rules, p: Range, x: real) -> real:
@@ -141,7 +115,7 @@ def make_radiance(view: Any, breaks: Callable[..., Any], cut: Callable[..., Any]
         side = wp.where(stop > start, ONE, -ONE)
         x = real(start)
         step = int(0)
-        limit = wp.where(p.slices <= _FEW, _LAST, _LAST_FINE) + p.nearest * p.nearest
+        limit = _LAST + p.nearest * p.nearest
         while side * (stop - x) > ZERO and x * x < limit:
             width = _STEP
             if side * x * _STEP > _FALL:
@@ -215,7 +189,7 @@ def make_radiance(view: Any, breaks: Callable[..., Any], cut: Callable[..., Any]
         first = real(low)
         last = real(high)
         if not finite:
-            reach = wp.sqrt(wp.where(slices <= _FEW, _LAST, _LAST_FINE) + p.nearest * p.nearest) / p.sharpness
+            reach = wp.sqrt(_LAST + p.nearest * p.nearest) / p.sharpness
             first = wp.max(low, -lobe.omega_o[0] - reach)
             last = wp.min(high, -lobe.omega_o[0] + reach)
         p.u0 = first
@@ -226,16 +200,8 @@ def make_radiance(view: Any, breaks: Callable[..., Any], cut: Callable[..., Any]
             p.ends = wp.where(p.u1 == high, extent.round_high, 0)
             p.x0 = p.sharpness * (p.u0 + lobe.omega_o[0])
             p.x1 = p.x0 + p.sharpness * (p.u1 - p.u0)
-            n = hermite_nodes(p)
             if finite:
                 total += ranged_with_ends(light, lobe, tables, rules, p, _END_NODES * slices, scale)
-            elif n > 0:
-                # nothing that matters is left for other ranges
-                total = ZERO
-                for i in range(n):
-                    node = hermite_node(n, i)
-                    total += node.weight * at(light, lobe, tables, rules, p, node.x)
-                break
             else:
                 total += ranged(light, lobe, tables, rules, p)
             p.u0 = p.u1
@@ -249,9 +215,13 @@ def make_radiance(view: Any, breaks: Callable[..., Any], cut: Callable[..., Any]
         """Radiance [1] towards omega_o; 0 from below the horizon."""
         r = real(0.0)
         s = lobe.scratch
-        extent = breaks(light, s, -TWO)
-        if lobe.omega_o[2] > ZERO and extent.low < extent.high:
-            if method == SLICES:
+        if lobe.omega_o[2] > ZERO and method == SLICES and slices <= _FEW and not is_finite(s):
+            r = few(light, lobe, tables, rules, slices)
+        elif lobe.omega_o[2] > ZERO:
+            extent = breaks(light, s, -TWO)
+            if extent.low >= extent.high:
+                r = ZERO
+            elif method == SLICES:
                 r = sliced(light, lobe, tables, rules, extent, slices)
             else:
                 u = -lobe.omega_o[0]

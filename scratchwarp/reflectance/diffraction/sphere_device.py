@@ -1,14 +1,11 @@
-"""A spherical light cut by a slice: an interval of psi around psi_p = atan2(p_2, p_3), p the unit axis.
-
-The slice's point nearest to the axis is the angle e away, and the cap of half angle a reaches d to both sides of psi_p,
-sin^2(d / 2) = sin((a - e) / 2) sin((a + e) / 2) / (s rho), rho = hypot(p_2, p_3): 1 - cos d without its cancellation,
-without quadratic equations, for lights of any size.
-"""
+"""A spherical light cut by a slice: the slice's half circle meets the cap around the unit axis p between two points, in
+closed form without angles, for lights of any size."""
 
 import warp as wp
 
+from .few_device import Marks
 from .quadrature_device import Rules
-from .real_device import HALF, ONE, PI, TWO, ZERO, real, vec3, vec4
+from .real_device import HALF, ONE, PI, ZERO, real, vec2, vec3, vec4
 from .scratch_device import WaveScratch, to_scratch
 from .slice_device import Breaks, Lobe, LobeTables, SliceSum, add_crossing
 
@@ -21,10 +18,11 @@ class SphereView:
     its rim turns, begins to go all round or meets the horizon, 4 for none."""
 
     p: vec3
-    half_angle: real
+    cosine: real  # of its half angle, the square of the sine, and of that of half of it
+    sine2: real
+    half_sine2: real
     around: int
     rho: real
-    middle: real
     extent: Breaks
     marks: vec4
 
@@ -48,9 +46,11 @@ def view_sphere(center: vec3, radius: real, s: WaveScratch) -> SphereView:
             r.p = c / distance
             # asin(R / d) in a form that is exact for both small and grazing spheres
             a = wp.atan2(sine, wp.sqrt((distance - sine) * (distance + sine)))
-            r.half_angle = a
+            share = sine / distance
+            r.sine2 = share * share
+            r.cosine = wp.sqrt((ONE - share) * (ONE + share))
+            r.half_sine2 = HALF * r.sine2 / (ONE + r.cosine)
             r.rho = wp.sqrt(r.p[1] * r.p[1] + r.p[2] * r.p[2])
-            r.middle = wp.atan2(r.p[1], r.p[2])
             from_axis = wp.atan2(r.rho, r.p[0])
             rim_low = wp.cos(from_axis + a)
             rim_high = wp.cos(from_axis - a)
@@ -94,42 +94,56 @@ def sphere_breaks(light: SphereView, s: WaveScratch, after: real) -> Breaks:
 
 
 @wp.func
-def _add_interval(
-    acc: SliceSum, lobe: Lobe, tables: LobeTables, rules: Rules, u: real, lo: real, hi: real
-) -> SliceSum:
-    r = acc
-    if lo < hi:
-        s = wp.sqrt(wp.max((ONE - u) * (ONE + u), ZERO))
-        r = add_crossing(r, lobe, tables, rules, u, s * wp.sin(lo), s * wp.cos(lo), -1)
-        r = add_crossing(r, lobe, tables, rules, u, s * wp.sin(hi), s * wp.cos(hi), 1)
+def sphere_marks(light: SphereView, s: WaveScratch, first: real, last: real) -> Marks:
+    """Its extent, as a round light without corners."""
+    r = Marks()
+    r.low = light.extent.low
+    r.high = light.extent.high
+    r.round = wp.where(light.extent.round_low != 0 and light.extent.round_high != 0, 2, 1)
     return r
 
 
 @wp.func
 def cut_sphere(light: SphereView, lobe: Lobe, tables: LobeTables, rules: Rules, u: real) -> SliceSum:
-    """The crossings of the slice at u with the part of the sphere above the horizon."""
+    """The crossings of the slice at u with the part of the sphere above the horizon.
+
+    p_2 across + p_3 height = cos a - u p_1 =: level meets the circle across^2 + height^2 = s^2 at across = (level p_2 -+
+    p_3 root) / rho^2, height = (level p_3 +- p_2 root) / rho^2, where root^2 = s^2 rho^2 - level^2 = sin^2 a - (u -
+    p_1)^2 - 4 u p_1 sin^2(a / 2) without its cancellation. The light lies between them, the upper signs where it begins.
+    """
     r = SliceSum()
-    half_turn = HALF * PI
+    s2 = wp.max((ONE - u) * (ONE + u), ZERO)
+    s = wp.sqrt(s2)
     if light.around != 0:
-        return _add_interval(r, lobe, tables, rules, u, -half_turn, half_turn)
+        r = add_crossing(r, lobe, tables, rules, u, -s, ZERO, -1)
+        r = add_crossing(r, lobe, tables, rules, u, s, ZERO, 1)
+        return r
     p = light.p
-    s = wp.sqrt(wp.max((ONE - u) * (ONE + u), ZERO))
-    rho = light.rho
-    e = wp.atan2(wp.abs(s * p[0] - rho * u), s * rho + u * p[0])
-    a = light.half_angle
-    if e < a:
-        sine2 = wp.sin(HALF * (a - e)) * wp.sin(wp.min(HALF * (a + e), half_turn))
-        middle = light.middle
-        if sine2 >= s * rho:
-            r = _add_interval(r, lobe, tables, rules, u, -half_turn, half_turn)
-        else:
-            d = TWO * wp.asin(wp.sqrt(sine2 / (s * rho)))
-            lo = middle - d
-            hi = middle + d
-            r = _add_interval(r, lobe, tables, rules, u, wp.max(lo, -half_turn), wp.min(hi, half_turn))
-            # an axis far below the horizon: the cap comes back a whole turn later
-            if hi > real(3.0) * half_turn:
-                r = _add_interval(r, lobe, tables, rules, u, -half_turn, wp.min(hi - TWO * PI, half_turn))
-            if lo < -real(3.0) * half_turn:
-                r = _add_interval(r, lobe, tables, rules, u, wp.max(lo + TWO * PI, -half_turn), half_turn)
+    away = u - p[0]
+    root2 = light.sine2 - away * away - real(4.0) * u * p[0] * light.half_sine2
+    level = light.cosine - u * p[0]
+    if root2 <= ZERO:
+        # all of the slice, or none of it
+        if level < ZERO:
+            r = add_crossing(r, lobe, tables, rules, u, -s, ZERO, -1)
+            r = add_crossing(r, lobe, tables, rules, u, s, ZERO, 1)
+        return r
+    scale = ONE / (light.rho * light.rho)
+    root = wp.sqrt(root2)
+    a = vec2(level * p[1] - p[2] * root, level * p[2] + p[1] * root) * scale
+    b = vec2(level * p[1] + p[2] * root, level * p[2] - p[1] * root) * scale
+    begins = a[1] >= ZERO
+    ends = b[1] >= ZERO
+    # the first half circle's end lies in the light unless the light both begins and ends above the horizon, once
+    if (begins and ends and a[0] > b[0]) or (ends and not begins):
+        r = add_crossing(r, lobe, tables, rules, u, -s, ZERO, -1)
+    if ends:
+        r = add_crossing(r, lobe, tables, rules, u, b[0], b[1], 1)
+    if begins:
+        r = add_crossing(r, lobe, tables, rules, u, a[0], a[1], -1)
+    if (begins and ends and a[0] > b[0]) or (begins and not ends):
+        r = add_crossing(r, lobe, tables, rules, u, s, ZERO, 1)
+    if not begins and not ends and s * p[2] > level:
+        r = add_crossing(r, lobe, tables, rules, u, -s, ZERO, -1)
+        r = add_crossing(r, lobe, tables, rules, u, s, ZERO, 1)
     return r

@@ -147,7 +147,8 @@ CLASSES = {
     "triangle": (lambda: _polygon(0.3, 3), 1e-5, 1e-2),
     "quad": (lambda: _polygon(0.02, 4), 1e-3, 1e-2),
     "star": (lambda: _polygon(0.3, 10, star=0.4), 1e-5, 1e-2),
-    "corner on the line": (lambda: _polygon(0.3, 4, corner=True), 1e-3, 3.5e-2),
+    # one of them has another edge along the line next to the corner
+    "corner on the line": (lambda: _polygon(0.3, 4, corner=True), 1e-5, 7e-2),
 }
 COUNT = 40
 
@@ -175,12 +176,14 @@ def test_accuracy_of_slices(name):
     make, median, worst = CLASSES[name]
     case = make()
     reference = radiance(*case, method="quadrature")
-    seen = reference > 1e-8
+    # views within 3 arc minutes of the horizon aside, where the slice itself changes over the Gaussian
+    seen = (reference > 1e-8) & (case[1][:, 2] > 1e-3)
     assert seen.sum() > COUNT // 3
     error = np.abs(radiance(*case) - reference)[seen] / reference[seen]
     assert np.median(error) < median and error.max() < worst, (np.median(error), error.max())
     many = radiance(*case, slices=48)
-    np.testing.assert_allclose(many[seen], reference[seen], rtol=1e-6)
+    bright = reference > 1e-8
+    np.testing.assert_allclose(many[bright], reference[bright], rtol=1e-6)
     np.testing.assert_allclose(many, reference, rtol=1e-4, atol=1e-12)
 
 
