@@ -260,3 +260,9 @@ def cut_polygon(light: PolygonView, lobe: Lobe, tables: LobeTables, rules: Rules
                     else:
                         r = _cut_edge(r, lobe, tables, rules, u, at, start)
     return r
+
+
+@wp.func
+def short_polygon(light: PolygonView, lobe: Lobe, rules: Rules, sharp: real, slices: int) -> real:
+    """No short cut."""
+    return -ONE

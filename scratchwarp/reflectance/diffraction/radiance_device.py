@@ -13,7 +13,6 @@ from typing import Any
 import warp as wp
 
 from .complex_device import power
-from .few_device import make_few
 from .quadrature_device import Rules, rule_node, rule_weight
 from .real_device import HALF, ONE, PI, TWO, ZERO, real
 from .scratch_device import along_amplitude, along_share, is_finite, offset_weight
@@ -96,10 +95,9 @@ def at_edge(p: Range, x: real) -> int:
     return wp.where((x == p.x0 and p.begins != 0) or (x == p.x1 and p.ends != 0), 1, 0)
 
 
-def make_radiance(view: Any, breaks: Callable[..., Any], marks: Callable[..., Any], cut: Callable[..., Any]) -> Any:
+def make_radiance(view: Any, breaks: Callable[..., Any], cut: Callable[..., Any], few: Callable[..., Any]) -> Any:
     """The device function ``radiance(light, lobe, tables, rules, method, slices)`` of a kind of light: its struct,
-    where it begins, ends or has corners in u, the same all at once, and what a slice cuts out of it."""
-    few = make_few(view, marks, cut)
+    where it begins, ends or has corners in u, what a slice cuts out of it, and its ``few``."""
 
     @wp.func
     def at(light: view, lobe: Lobe, tables: LobeTables, rules: Rules, p: Range, x: real) -> real:

@@ -2,18 +2,21 @@
 
 import warp as wp
 
-from .polygon_device import PolygonView, cut_polygon, polygon_breaks, polygon_marks, view_polygon
+from .few_device import make_few
+from .polygon_device import PolygonView, cut_polygon, polygon_breaks, polygon_marks, short_polygon, view_polygon
 from .quadrature_device import Rules
 from .radiance_device import make_radiance
 from .real_device import real, vec3
 from .scratch_device import WaveScratch
 from .slice_device import LobeTables, make_lobe
-from .sphere_device import SphereView, cut_sphere, sphere_breaks, sphere_marks, view_sphere
+from .sphere_device import SphereView, cut_sphere, short_sphere, sphere_breaks, sphere_marks, view_sphere
 
 wp.set_module_options({"enable_backward": False})
 
-_sphere_radiance = make_radiance(SphereView, sphere_breaks, sphere_marks, cut_sphere)
-_polygon_radiance = make_radiance(PolygonView, polygon_breaks, polygon_marks, cut_polygon)
+_few_of_sphere = make_few(SphereView, sphere_marks, cut_sphere, short_sphere)
+_few_of_polygon = make_few(PolygonView, polygon_marks, cut_polygon, short_polygon)
+_sphere_radiance = make_radiance(SphereView, sphere_breaks, cut_sphere, _few_of_sphere)
+_polygon_radiance = make_radiance(PolygonView, polygon_breaks, cut_polygon, _few_of_polygon)
 
 
 @wp.struct

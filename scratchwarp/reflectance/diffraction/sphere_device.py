@@ -3,13 +3,18 @@ closed form without angles, for lights of any size."""
 
 import warp as wp
 
-from .few_device import Marks
-from .quadrature_device import Rules
+from .few_device import BEYOND, WIDE, Marks, inverse_erf, spread_node, spread_weight
+from .lobe_device import sinc
+from .quadrature_device import Rules, rule_node, rule_weight
 from .real_device import HALF, ONE, PI, ZERO, real, vec2, vec3, vec4
 from .scratch_device import WaveScratch, to_scratch
-from .slice_device import Breaks, Lobe, LobeTables, SliceSum, add_crossing
+from .slice_device import EXACT, Breaks, Lobe, LobeTables, SliceSum, add_crossing
 
 _BEYOND = wp.constant(real(4.0))
+_SHORT = wp.constant(real(0.04))  # of a fringe to either side: the parabola is within 6e-4 of its fringe
+_STEEP = wp.constant(real(0.1))
+_SQRT_PI = wp.constant(real(1.7724538509055159))
+_NARROW = wp.constant(real(0.15))  # of a fringe: 4e-7
 
 
 @wp.struct
@@ -18,7 +23,8 @@ class SphereView:
     its rim turns, begins to go all round or meets the horizon, 4 for none."""
 
     p: vec3
-    cosine: real  # of its half angle, the square of the sine, and of that of half of it
+    cosine: real  # of its half angle; its sine, the square of that, and the square of the sine of half of it
+    share: real
     sine2: real
     half_sine2: real
     around: int
@@ -44,40 +50,40 @@ def view_sphere(center: vec3, radius: real, s: WaveScratch) -> SphereView:
             e.high = ONE
         else:
             r.p = c / distance
-            # asin(R / d) in a form that is exact for both small and grazing spheres
-            a = wp.atan2(sine, wp.sqrt((distance - sine) * (distance + sine)))
             share = sine / distance
+            r.share = share
             r.sine2 = share * share
             r.cosine = wp.sqrt((ONE - share) * (ONE + share))
             r.half_sine2 = HALF * r.sine2 / (ONE + r.cosine)
             r.rho = wp.sqrt(r.p[1] * r.p[1] + r.p[2] * r.p[2])
-            from_axis = wp.atan2(r.rho, r.p[0])
-            rim_low = wp.cos(from_axis + a)
-            rim_high = wp.cos(from_axis - a)
+            # the rim turns at the cosines of the axis' angle from u plus and minus the half angle
+            rim_low = r.p[0] * r.cosine - r.rho * share
+            rim_high = r.p[0] * r.cosine + r.rho * share
             r.marks = vec4(rim_low, rim_high, _BEYOND, _BEYOND)
-            e.low = wp.where(from_axis + a >= PI, -ONE, rim_low)
-            e.high = wp.where(from_axis <= a, ONE, rim_high)
+            e.low = wp.where(r.rho * r.cosine + r.p[0] * share <= ZERO, -ONE, rim_low)
+            e.high = wp.where(r.rho * r.cosine - r.p[0] * share <= ZERO, ONE, rim_high)
             e.round_low = 1
             e.round_high = 1
-            flat = wp.sqrt(r.p[0] * r.p[0] + r.p[1] * r.p[1])
-            level = wp.cos(a)
-            if flat > level:
-                at = wp.atan2(r.p[1], r.p[0])
-                spread = wp.acos(level / flat)
-                left = wp.cos(at - spread)
-                right = wp.cos(at + spread)
-                r.marks = vec4(rim_low, rim_high, left, right)
-                if r.p[2] < ZERO:
-                    # its widest part is below the horizon, where the rest begins and ends flat
-                    if e.low > -ONE:
-                        e.low = wp.min(left, right)
-                        e.round_low = 0
-                    if e.high < ONE:
-                        e.high = wp.max(left, right)
-                        e.round_high = 0
-            elif r.p[2] < ZERO:
-                e.low = ZERO
-                e.high = ZERO
+            if r.p[2] < share:
+                flat2 = r.p[0] * r.p[0] + r.p[1] * r.p[1]
+                above = flat2 - r.cosine * r.cosine
+                if above > ZERO:
+                    # where its rim meets the horizon
+                    spread = wp.abs(r.p[1]) * wp.sqrt(above)
+                    left = (r.p[0] * r.cosine - spread) / flat2
+                    right = (r.p[0] * r.cosine + spread) / flat2
+                    r.marks = vec4(rim_low, rim_high, left, right)
+                    if r.p[2] < ZERO:
+                        # its widest part is below the horizon, where the rest begins and ends flat
+                        if e.low > -ONE:
+                            e.low = left
+                            e.round_low = 0
+                        if e.high < ONE:
+                            e.high = right
+                            e.round_high = 0
+                elif r.p[2] < ZERO:
+                    e.low = ZERO
+                    e.high = ZERO
     r.extent = e
     return r
 
@@ -107,9 +113,9 @@ def sphere_marks(light: SphereView, s: WaveScratch, first: real, last: real) -> 
 def cut_sphere(light: SphereView, lobe: Lobe, tables: LobeTables, rules: Rules, u: real) -> SliceSum:
     """The crossings of the slice at u with the part of the sphere above the horizon.
 
-    p_2 across + p_3 height = cos a - u p_1 =: level meets the circle across^2 + height^2 = s^2 at across = (level p_2 -+
-    p_3 root) / rho^2, height = (level p_3 +- p_2 root) / rho^2, where root^2 = s^2 rho^2 - level^2 = sin^2 a - (u -
-    p_1)^2 - 4 u p_1 sin^2(a / 2) without its cancellation. The light lies between them, the upper signs where it begins.
+    p_2 across + p_3 height = cos a - u p_1 =: level meets the circle across^2 + height^2 = s^2 at across = (level p_2
+    -+ p_3 root) / rho^2, height = (level p_3 +- p_2 root) / rho^2, where root^2 = s^2 rho^2 - level^2 = sin^2 a - (u -
+    p_1)^2 - 4 u p_1 sin^2(a / 2) without its cancellation. The light begins at the upper signs and ends at the lower.
     """
     r = SliceSum()
     s2 = wp.max((ONE - u) * (ONE + u), ZERO)
@@ -134,6 +140,17 @@ def cut_sphere(light: SphereView, lobe: Lobe, tables: LobeTables, rules: Rules, 
     b = vec2(level * p[1] + p[2] * root, level * p[2] - p[1] * root) * scale
     begins = a[1] >= ZERO
     ends = b[1] >= ZERO
+    if lobe.kind == EXACT and begins and ends:
+        # narrow lights by three nodes of Gauss: error (2 pi t)^6 / 2e6
+        t = lobe.ratio * (b[0] - a[0])
+        if t > ZERO and t < _NARROW:
+            middle = lobe.ratio * (lobe.omega_o[1] + HALF * (a[0] + b[0]))
+            mean = sinc(middle)
+            left = sinc(middle - real(0.3872983346207417) * t)
+            right = sinc(middle + real(0.3872983346207417) * t)
+            r.rest = PI * t * (real(8.0) * mean * mean + real(5.0) * (left * left + right * right)) / real(18.0)
+            r.length = t
+            return r
     # the first half circle's end lies in the light unless the light both begins and ends above the horizon, once
     if (begins and ends and a[0] > b[0]) or (ends and not begins):
         r = add_crossing(r, lobe, tables, rules, u, -s, ZERO, -1)
@@ -147,3 +164,53 @@ def cut_sphere(light: SphereView, lobe: Lobe, tables: LobeTables, rules: Rules, 
         r = add_crossing(r, lobe, tables, rules, u, -s, ZERO, -1)
         r = add_crossing(r, lobe, tables, rules, u, s, ZERO, 1)
     return r
+
+
+@wp.func
+def short_sphere(light: SphereView, lobe: Lobe, rules: Rules, sharp: real, slices: int) -> real:
+    """``few`` of a whole sphere that is narrow against the fringes of sinc^2, a parabola across it; -1 where it is
+    not."""
+    p = light.p
+    reach = light.rho * light.share
+    steep = light.rho * light.rho
+    x0 = sharp * (p[0] * light.cosine - reach + lobe.omega_o[0])
+    x1 = sharp * (p[0] * light.cosine + reach + lobe.omega_o[0])
+    near = wp.max(x0, -x1)
+    if lobe.kind != EXACT or light.around != 0 or lobe.ratio * light.share > _SHORT:
+        return -ONE
+    if p[2] <= light.share or steep < _STEEP or near > BEYOND:
+        return -ONE
+    step = light.share
+    middle = lobe.omega_o[1] + p[1]
+    left = sinc(lobe.ratio * (middle - step))
+    level = sinc(lobe.ratio * middle)
+    right = sinc(lobe.ratio * (middle + step))
+    c0 = level * level
+    c1 = (right * right - left * left) * HALF / step
+    c2 = (HALF * (right * right + left * left) - c0) / (step * step)
+    scale = ONE / steep
+    n = int(slices)
+    wide = n > 1 and wp.min(-x0, x1) >= WIDE
+    lo = real(0.0)
+    mass = real(2.0)
+    if wide:
+        n = 2
+    else:
+        lo = wp.erf(x0)
+        mass = wp.erf(x1) - lo
+    total = real(0.0)
+    for i in range(n):
+        weight = HALF
+        x = real(2 * i - 1) * real(0.7071067811865476)
+        if not wide:
+            t = rule_node(rules, n, i)
+            x = inverse_erf(lo + mass * spread_node(t, HALF))
+            weight = rule_weight(rules, n, i) * spread_weight(t, HALF)
+        u = x / sharp - lobe.omega_o[0]
+        away = u - p[0]
+        root2 = light.sine2 - away * away - real(4.0) * u * p[0] * light.half_sine2
+        half = p[2] * wp.sqrt(wp.max(root2, ZERO)) * scale
+        d = (light.cosine - u * p[0]) * p[1] * scale - p[1]
+        total += weight * half * (c0 + d * (c1 + d * c2) + c2 * half * half / real(3.0))
+    total *= _SQRT_PI * mass * lobe.peak * PI * lobe.ratio
+    return wp.max(total, ZERO) / sharp
