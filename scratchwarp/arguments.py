@@ -195,6 +195,7 @@ _EXAMPLES = {
   scratchwarp simulate ball.usda tables.##.npz""",
     "validate": "scratchwarp validate ball.usda\n  scratchwarp validate ball.usda --strict --json",
     "view": "scratchwarp view ball.usda\n  scratchwarp view ball.usda --screenshot look.png --frame 12\n"
+    "  scratchwarp view ball.usda --web --port 8765\n"
     "  scratchwarp view ball.usda --profile hairlines\n  scratchwarp view quartic",
     "fit": "scratchwarp fit cloth.bin cloth.usda --report cloth\n  scratchwarp fit paint.binary paint.usda --modes 1\n"
     "  scratchwarp fit kettle.usda far.usda --material brass   # scratches seen from far away",
@@ -289,6 +290,15 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("--camera", "-cam", metavar="NAME", help="camera prim, by path or name")
     made.add_argument("--imageWidth", "-w", type=int, metavar="PIXELS", help="of the rendered image in it")
     made.add_argument("--spp", type=int, help="samples a pixel of the rendered image in it")
+    web = made.add_argument_group("in the browser")
+    web.add_argument("--web", action="store_true", help="print links that show the stage in browsers; Ctrl+C ends it")
+    web.add_argument(
+        "--host", metavar="ADDRESS", help="to listen on [127.0.0.1, for this machine alone]"
+    )
+    web.add_argument("--port", type=int, help="to listen on [any that is free]")
+    web.add_argument("--browse", action="store_true", help="open the first link in this machine's browser")
+    web.add_argument("--save", metavar="FILE", help="USD layer that edits are saved to [NAME.look.usda beside STAGE]")
+    web.add_argument("--sessionLayer", "--session", metavar="FILE", help="USD layer laid over the stage")
 
     made = command("fit", "fit highlight stencils to a measured BRDF, written as a material", json_too=True)
     made.add_argument("measured", metavar="MEASURED", help="UTIA .bin, MERL .binary, RGL .bsdf, or a USD stage")

@@ -183,6 +183,16 @@ def view(args: Command) -> int:
         raise UsageError(f"--frame {args.frame!r} is {len(frames)} frames; a window shows one")
     options = {"width": args.imageWidth, "spp": args.spp}
     given = {name: value for name, value in options.items() if value is not None}
+    if args.web:
+        if args.profile is not None or args.screenshot or args.depth is not None:
+            raise UsageError("--web shows a whole stage; leave out --profile, --depth and --screenshot")
+        named = {"host": args.host, "port": args.port, "save": args.save, "session_layer": args.sessionLayer}
+        given |= {name: value for name, value in named.items() if value is not None}
+        viewers.view_web(args.stage, browse=args.browse, frame=frames[0], camera=args.camera, **given)
+        return 0
+    for name in ("host", "port", "save", "sessionLayer"):
+        if getattr(args, name) is not None:
+            raise UsageError(f"--{name} is of the view in the browser; add --web")
     if args.profile is None and args.stage not in profiles.shape_names():
         if args.depth is not None:
             raise UsageError("--depth is of one profile; add --profile")

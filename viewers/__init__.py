@@ -14,6 +14,8 @@ Files:
     display        pyvista, and whether windows can be drawn here
     sheet, marks   pictures, lines and words that are changed in place
     sliders        a slider for a number
+    looking        an image that refines in a thread while its stage is edited; turning moves camera and lights
+    web            the same in browsers
     window         all of it together, and the keys of the window
 
 ``view`` opens the window; importing this package imports neither pyvista nor pxr nor Warp.
@@ -22,7 +24,7 @@ Files:
 from pathlib import Path
 from typing import Any
 
-__all__ = ["KEYS", "PROFILE_KEYS", "view", "view_profile"]
+__all__ = ["KEYS", "PROFILE_KEYS", "view", "view_profile", "view_web"]
 
 # key -> what it does in the window, as --help prints it.
 KEYS = {
@@ -77,3 +79,14 @@ def view(stage_path: Path | str, screenshot: Path | str | None = None, **options
     from .window import view as show
 
     show(stage_path, screenshot, **options)
+
+
+def view_web(stage_path: Path | str, **options: Any) -> None:
+    """Show a stage in browsers until interrupted, refined while it is edited; links are printed. Needs no pyvista.
+
+    ``options`` are those of ``scratchwarp.viewers.web.serve``: host, port, save, width, spp, browse, and of ``read``.
+    Raises OSError where the address cannot be had, ValueError when the stage is at fault.
+    """
+    from .web import serve
+
+    serve(stage_path, **options)

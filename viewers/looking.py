@@ -52,10 +52,13 @@ class Looking:
 
     Edits that come while a step is traced interrupt it after the tile at hand; those to the same attribute replace each
     other, moves add up. What is at fault is told in ``Shown.message`` and leaves everything as it was.
+
+    Attributes: shown: what there is to see now; stage: the path of the stage.
     """
 
     def __init__(self, live: LiveStage, settings: Settings | None = None) -> None:
         self._live, self._settings = live, settings or Settings()
+        self.stage = live.path
         self._condition = threading.Condition()
         self._values: dict[str, Any] = {}
         self._moves: dict[str, Move] = {}

@@ -24,7 +24,7 @@ def test_every_data_file_is_packed():
     for package, globs in patterns.items():
         folder = repository() / folders.get(package, package.replace(".", "/"))
         packed |= {path for pattern in globs for path in folder.glob(pattern)}
-    kinds = (".csv", ".json", ".usda", ".typed")
+    kinds = (".csv", ".json", ".usda", ".typed", ".html", ".js", ".css")
     roots = ("scratchwarp", "pipelines", "usd_schemas", "viewers")
     data = {
         path
