@@ -324,8 +324,8 @@ def make_strand_light(key: KernelKey, transmittance):
                                             reach = wp.min(ls.distance * 0.9999, light.shadow_distance)
                                             t = transmittance(g, arrays, p, ls.wi, reach)
                                             rays += 1.0
-                                            for c in range(3):
-                                                seen[c] = t + (1.0 - t) * light.shadow_color[c]
+                                            for channel in range(3):
+                                                seen[channel] = t + (1.0 - t) * light.shadow_color[channel]
                                     if n < wp.static(_MOST_KNOWN):
                                         known[n] = seen
                                 arriving = wp.cw_mul(ls.radiance, wp.vec3(seen[0], seen[1], seen[2]))

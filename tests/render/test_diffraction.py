@@ -31,7 +31,7 @@ LENGTH = 0.004
 """Of the one scratch [m]."""
 # one kernel for all tests: its code does not depend on which of these lights are there
 LIGHTS = {f"lights.{name}": True for name in ("distant", "sphere", "rect", "dome")}
-COMPILED = {**LIGHTS, "diffraction.areaLights": True, "shadows": False}
+COMPILED = {**LIGHTS, "diffraction.areaLights": True, "shadows": True}
 
 
 def black():
@@ -67,7 +67,6 @@ def straight_down(size=0.006):
 
 
 def render(material, light, curves, spp=1, size=16, camera=None, effects=None, **settings):
-    # a closed box is convex, so it needs no shadow rays
     floor = scenes.place(0, 0, (0, 0, -1))
     cam = camera or straight_down()
     world = scenes.scene([scenes.plane(0.02)], [material], [light], instances=[floor], cam=cam, curves=curves)
