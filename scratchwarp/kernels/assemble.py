@@ -169,9 +169,10 @@ def assemble(
                 [material.pack_layer(p, sets[p.sublayer.curves] if p.sublayer.curves >= 0 else None) for p in own]
                 for own in plan.layers
             ]
-        return material.pack(scene, packed_layers or [[] for _ in scene.materials], atlas, device)
+        bases = {n: (r, plan.responses[r].albedo) for n, r in enumerate(plan.bases) if r >= 0 and key.responses}
+        return material.pack(scene, packed_layers or [[] for _ in scene.materials], atlas, device, bases)
 
-    described = digest(scene.materials, plan.layers, key)
+    described = digest(scene.materials, plan.layers, plan.bases, key)
     stuff = parts.part("layers", (described, scene.textures, explicit), layers)
     light_set, scratch_set = LightSet(), ScratchSet()
     light_set.lights = wp.array(table, dtype=Light, device=device)
@@ -183,7 +184,10 @@ def assemble(
         "tables", tuple(tables), lambda: profile_table.pack(tables, device, parts.last("tables"))
     )
     used = plan.responses if key.responses else ()
-    scratch_set.responses = parts.part("responses", (digest(used),), lambda: pack_responses(used, device))
+    responding = parts.part(
+        "responses", (digest(used), scene.textures), lambda: pack_responses(used, device, scene.textures)
+    )
+    scratch_set.responses = responding.arrays
     scratch_set.variations = material.pack_variations(plan.layers if key.variation else (), device)
     sparkle = parts.part(
         "glints",
@@ -192,4 +196,4 @@ def assemble(
     )
     scratch_set.glints = sparkle.arrays
     inputs = (camera_data(scene, plan), shape.arrays, stuff.arrays, scratch_set, light_set)
-    return Assembled(key, inputs, (shape, stuff, packed, sets, sparkle), packed.warnings)
+    return Assembled(key, inputs, (shape, stuff, packed, sets, sparkle, responding), packed.warnings)

@@ -117,6 +117,9 @@ def make_bounce(key: KernelKey, rotated, emission_at):
                 lobe.frame = rotated(frame, m)
             lobe.wo = to_local(lobe.frame, wo)
             lobe.base = base
+            if wp.static(len(key.responses) > 0):
+                if m.response >= 0:
+                    lobe.response = place(scratches.responses, m.response, spot_of(g, s, frame, step_x, step_y))
             if wp.static(key.opacity):
                 lobe.w_diffuse *= 1.0 - through
         if wp.static(key.opacity):

@@ -58,7 +58,8 @@ def make_place(key: KernelKey):
         at.kind = record.kind
         at.index = record.index
         at.reflectance = record.reflectance
-        at.cos_turn = 1.0
+        at.x_axis = wp.vec2(1.0, 0.0)
+        at.y_axis = wp.vec2(0.0, 1.0)
         for j in range(wp.static(len(functions))):
             if at.kind == wp.static(numbers[j]):
                 at = wp.static(functions[j])(responses, at, spot)

@@ -1,7 +1,7 @@
 """Scene materials -> device materials, with their scratch layers."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,6 +10,7 @@ import warp as wp
 from ..plan.choice import LayerPlan
 from ..plan.layers import conductor_index
 from ..scene import PreviewSurface, Scene, ScratchSurface, TextureInput
+from ..scene.material import Color
 from ..scene.texture import CHANNELS, WRAPS
 from ..scratches import kind_number
 from ..scratches.expand import bend
@@ -122,21 +123,32 @@ def pack_variations(layers: Sequence[Sequence[LayerPlan]], device: str = "cpu") 
     return wp.array(records or [VariationData()], dtype=VariationData, device=device)
 
 
-def pack(scene: Scene, layers: list[list[LayerData]], atlas: Any, device: str = "cpu") -> PackedMaterials:
+def pack(
+    scene: Scene,
+    layers: list[list[LayerData]],
+    atlas: Any,
+    device: str = "cpu",
+    bases: Mapping[int, tuple[int, Color]] | None = None,
+) -> PackedMaterials:
     """Device materials; ``layers[i]`` are the packed sublayers of material i, the ones that cut deepest last.
 
-    ``atlas``: the scene's textures as ``reflectance.texture.pack_textures`` puts them on the device.
+    ``atlas``: the scene's textures as ``reflectance.texture.pack_textures`` puts them on the device. ``bases``:
+    material -> response that stands in for its base, and about its albedo.
     """
     reads: list[TextureRead] = []
     records: list[MaterialData] = []
     flat: list[LayerData] = []
-    for material, own in zip(scene.materials, layers, strict=True):
+    for number, (material, own) in enumerate(zip(scene.materials, layers, strict=True)):
         m = MaterialData()
-        if isinstance(material.surface, PreviewSurface):
+        m.response = -1
+        if bases and number in bases:
+            m.response, albedo = bases[number]
+            _scratch_surface(m, ScratchSurface(base="diffuse", color=albedo))
+        elif isinstance(material.surface, PreviewSurface):
             _preview(m, material.surface, reads)
         else:
             _scratch_surface(m, material.surface)
-        m.display_color = int(material.uses_display_color)
+        m.display_color = int(material.uses_display_color and m.response < 0)
         m.first_layer, m.layers = len(flat), len(own)
         m.veil = math.prod(1.0 - min(d.mean, 1.0) for d in own if d.keeps_diffuse == 0 and d.bvh == 0)
         flat.extend(own)

@@ -54,6 +54,7 @@ class MaterialData:
     alpha_y: float
     cos_rotation: float
     sin_rotation: float
+    response: int  # that stands in for the base, -1: none
     first_layer: int
     layers: int
     veil: float  # what scratches that nothing passes through leave of light that passes through, on the average

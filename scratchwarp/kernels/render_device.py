@@ -161,7 +161,7 @@ def make_kernel(key: KernelKey):
                         tangent = wp.vec3(0.0, 0.0, 0.0)
                         if wp.static(key.directed):
                             # other materials keep the samples that they have without any tangents
-                            if m.layers > 0 or m.alpha_x != m.alpha_y:
+                            if m.layers > 0 or m.alpha_x != m.alpha_y or m.response >= 0:
                                 tangent = interpolate_tangent(g, s)
                         frame = frame_at(g, arrays, m, s, tangent, wo)
                         # edges of the footprint in the triangle's plane

@@ -51,12 +51,14 @@ class TablePlan:
 @dataclass(frozen=True, eq=False)
 class ResponsePlan:
     """One response over solid angle: a key of ``reflectance.responses.RESPONSES``, the values that its ``pack`` takes,
-    the ``optics`` reflector of its facets (None: a mirror, or none needed), and the layers or materials that use it."""
+    the ``optics`` reflector of its facets (None: a mirror, or none needed), the layers or materials that use it, and
+    about its albedo."""
 
     name: str
     values: Any
     fresnel: Any
     users: tuple[str, ...]
+    albedo: tuple[float, float, float] = (1.0, 1.0, 1.0)
 
 
 @dataclass(frozen=True)
@@ -101,6 +103,7 @@ class EffectPlan:
         window: (x0, x1, y0, y1) of the pixels rendered, the maxima exclusive.
         layers: for each material of the scene its sublayers. tables: what to simulate. responses: the others.
         waves: for each material what of it diffracts (a ``waves.WavePlan``), or None.
+        bases: for each material the response that stands in for its base, or -1.
         warnings: what cannot be honoured. seconds: how long planning took.
     """
 
@@ -115,6 +118,7 @@ class EffectPlan:
     numbers: Mapping[str, str] = field(default_factory=dict)
     responses: tuple[ResponsePlan, ...] = ()
     waves: tuple[Any, ...] = ()
+    bases: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
         put(self, effects=MappingProxyType(dict(self.effects)), numbers=MappingProxyType(dict(self.numbers)))

@@ -32,6 +32,12 @@ class Facts:
     tables: tuple[TablePlan, ...]
     responses: tuple[ResponsePlan, ...] = ()
     waves: tuple[Any, ...] = ()
+    bases: tuple[int, ...] = ()
+
+    @property
+    def replaced(self) -> set[str]:
+        """Paths of the materials whose base a response stands in for."""
+        return {m.path for m, base in zip(self.scene.materials, self.bases, strict=False) if base >= 0}
 
     @property
     def every(self) -> list[LayerPlan]:
@@ -45,7 +51,7 @@ def _answer(prims: list[str], on: str, off: str) -> Answer:
 
 
 def _surfaces(f: Facts, test: Callable[[Any], bool], on: str, off: str) -> Answer:
-    return _answer([m.path for m in f.materials if test(m.surface)], on, off)
+    return _answer([m.path for m in f.materials if m.path not in f.replaced and test(m.surface)], on, off)
 
 
 def _scratches(f: Facts) -> Answer:
@@ -126,6 +132,7 @@ def _transparent(s: Any) -> bool:
 def _directed(f: Facts) -> Answer:
     ids = [m.path for m, own in zip(f.scene.materials, f.layers, strict=True) if own]
     ids += [m.path for m in f.materials if isinstance(m.surface, ScratchSurface) and m.surface.anisotropy != 0.0]
+    ids += f.replaced
     return _answer(ids, "these materials have a direction: tangents are built", "no material has a direction")
 
 
@@ -185,8 +192,10 @@ EFFECTS: dict[str, Callable[[Facts], Answer]] = {
     "base.preview": lambda f: _surfaces(
         f, lambda s: isinstance(s, PreviewSurface), "UsdPreviewSurface bases", "no UsdPreviewSurface base"
     ),
-    "base.measured": lambda f: _surfaces(
-        f, lambda s: isinstance(s, ScratchSurface), "ScratchSurface bases", "no ScratchSurface base"
+    "base.measured": lambda f: _answer(
+        [m.path for m in f.materials if m.path in f.replaced or isinstance(m.surface, ScratchSurface)],
+        "ScratchSurface bases, or what stands for measured ones",
+        "no ScratchSurface base",
     ),
     "base.direction": _directed,
     "base.textures": lambda f: _surfaces(f, _textured, "inputs read from textures", "no input reads a texture"),

@@ -10,7 +10,7 @@ import numpy as np
 from .. import optics
 from ..optics import metals
 from ..scene import Layer, Material, PreviewSurface, Scene, ScratchSurface, TextureInput
-from ..scratches.expand import Sublayer, sublayers
+from ..scratches.expand import Sublayer
 from . import models
 from .choice import LayerPlan, ResponsePlan, TablePlan, Variation
 from .profiles import cross_section
@@ -162,8 +162,10 @@ def _complaints(material: Material, layer: Layer, fresnel: Any) -> list[str]:
     said = []
     if layer.model == "diffraction" and material.wave is None:
         said.append(f"{layer.label}: model diffraction needs ScratchWaveAPI on {material.path}; its table is used")
-    if layer.model in ("groove", "normalMap"):
+    if layer.model == "groove":
         said.append(f"{layer.label}: model {layer.model} is rendered by its profile table for now")
+    if layer.model == "normalMap" and layer.normal_map is None:
+        said.append(f"{layer.label}: model normalMap has no normalTexture; its profile table is used")
     surface = material.surface
     if isinstance(surface, PreviewSurface) and layer.material == "inherit" and isinstance(fresnel, optics.Schlick):
         read = ("specular_color",) if surface.use_specular_workflow else ("diffuse_color", "metallic")
@@ -198,7 +200,7 @@ def plan_layers(
             layer = replace(authored, model=model) if model else authored
             if elsewhere(material, layer):
                 continue
-            subs = [s for s in sublayers(layer) if allowed(s.distribution)]
+            subs = [s for s in models.laid_out(layer) if allowed(s.distribution)]
             try:
                 fresnel, keeps = reflector(scene, material, layer)
             except ValueError as error:

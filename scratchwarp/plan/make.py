@@ -10,6 +10,7 @@ from .choice import EffectChoice, EffectPlan, LayerPlan, ResponsePlan, TablePlan
 from .cost import shares
 from .effects import EFFECTS, Facts
 from .layers import plan_layers, reflector
+from .models import base_responses
 from .resolve import resolve
 from .waves import diffracts, plan_waves
 
@@ -42,10 +43,11 @@ def make_plan(scene: Scene, settings: Settings | None = None, earlier: EffectPla
             scene, allowed, decided.max_error, known, decided.model, waved
         )
         waves = plan_waves(scene, waved, reflector, decided.model)
+        used = sorted({m for instance in scene.instances for m in instance.materials})
+        responses, bases = base_responses(scene, used, responses, lambda effect: forced.get(effect, True))
     except ValueError as error:
         raise ValueError(f"{scene.path}: {error}") from None
-    used = sorted({m for instance in scene.instances for m in instance.materials})
-    facts = Facts(scene, decided, tuple(scene.materials[i] for i in used), layers, tables, responses, waves)
+    facts = Facts(scene, decided, tuple(scene.materials[i] for i in used), layers, tables, responses, waves, bases)
     effects = {}
     for name, rule in EFFECTS.items():
         enabled, reason, prims = rule(facts)
@@ -86,6 +88,7 @@ def make_plan(scene: Scene, settings: Settings | None = None, earlier: EffectPla
         numbers=numbers,
         responses=responses,
         waves=waves,
+        bases=bases,
         seconds=time.perf_counter() - start,
     )
 

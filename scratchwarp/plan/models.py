@@ -5,12 +5,15 @@ table with every facet a perfect mirror), ``fullTable`` (reflectances at many th
 (the facets' distribution times masking) are tables; ``ashikhminShirley`` is a lobe over solid angle.
 """
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 from .. import optics
-from ..reflectance.responses import facets
-from ..scene import Layer
+from ..reflectance import stencils
+from ..reflectance.responses import RESPONSES, facets, stencil_response
+from ..scene import Layer, Measured, Scene
+from ..scratches.expand import Sublayer, sublayers
 from .choice import ResponsePlan, TablePlan
 from .profiles import cross_section
 
@@ -41,6 +44,13 @@ def reflector_of(model: str, fresnel: Any, keeps: bool) -> tuple[Any, bool]:
     return fresnel, keeps
 
 
+def laid_out(layer: Layer) -> tuple[Sublayer, ...]:
+    """The sublayers of a layer; a scratch normal map covers everything."""
+    if layer.model == "normalMap" and layer.normal_map is not None:
+        return (Sublayer(layer, "full", layer.angle, 1.0, seed=layer.seed),)
+    return sublayers(layer)
+
+
 def changed(plan: TablePlan, model: str) -> TablePlan:
     """A table's plan under a model."""
     table = TABLE_MODELS.get(model)
@@ -63,6 +73,8 @@ class Responses:
         if layer.model == "ashikhminShirley":
             lobe = facets.fitted(cross_section(layer.profile, sized).polyline())
             return self._number(layer.model, lobe, fresnel, layer.label)
+        if layer.model == "normalMap" and layer.normal_map is not None:
+            return self._number(layer.model, layer.normal_map, fresnel, layer.label)
         return -1
 
     def _number(self, name: str, values: Any, fresnel: Any, user: str) -> int:
@@ -78,3 +90,42 @@ class Responses:
     def plans(self) -> tuple[ResponsePlan, ...]:
         """All of them, by number."""
         return tuple(self._plans)
+
+
+def base_responses(
+    scene: Scene, used: Sequence[int], responses: tuple[ResponsePlan, ...], allowed: Callable[[str], bool]
+) -> tuple[tuple[ResponsePlan, ...], tuple[int, ...]]:
+    """(responses with those that stand in for bases, their numbers by material or -1).
+
+    ``used``: materials that something is made of; ``allowed(effect)``: whether it may be on. Raises ValueError naming
+    the material whose measurement cannot be read or means nothing.
+    """
+    found, bases = list(responses), []
+    for number, material in enumerate(scene.materials):
+        bases.append(-1)
+        if number in used and material.measured is not None:
+            try:
+                name, values, albedo = measured_base(material.measured)
+            except (ValueError, OSError) as error:
+                raise ValueError(f"{material.path}: {error}") from None
+            if allowed(RESPONSES[name].effect):
+                bases[-1] = len(found)
+                found.append(ResponsePlan(name, values, None, (material.path,), albedo))
+    return tuple(found), tuple(bases)
+
+
+def measured_base(record: Measured) -> tuple[str, Any, tuple[float, float, float]]:
+    """(response, its values, about its albedo) of a measured base."""
+    columns = zip(
+        record.azimuth, record.width, record.a, record.b, record.kd, record.ks, record.alpha, record.color, strict=True
+    )
+    model = stencils.Model(
+        tuple(stencils.Mode(*map(float, numbers), color) for *numbers, color in columns),
+        beta=record.beta,
+        background=record.background,
+        k=record.k,
+        specular_alpha=record.specular_alpha,
+        retro=record.retro,
+        mask=record.mask,
+    )
+    return "stencils", model, stencil_response.albedo(model)

@@ -6,6 +6,7 @@ Files:
     texture     Texture, TextureInput
     material    PreviewSurface, ScratchSurface, Material
     layer       Profile, Layer, Wave, Curves: the scratches on a material
+    normal_map  NormalMap: what model normalMap reflects by
     light       one record for each light
     camera      Camera and the window it sees
     output      RenderProduct, RenderOptions: what the stage asks the renderer for
@@ -32,7 +33,8 @@ from .light import (
     Shaping,
     SphereLight,
 )
-from .material import Material, PreviewSurface, ScratchSurface
+from .material import Material, Measured, PreviewSurface, ScratchSurface
+from .normal_map import NormalMap
 from .output import RenderOptions, RenderProduct, RenderVar
 from .settings import Settings
 from .texture import Texture, TextureInput
@@ -50,8 +52,10 @@ __all__ = [
     "Layer",
     "Light",
     "Material",
+    "Measured",
     "Mesh",
     "MeshLight",
+    "NormalMap",
     "PreviewSurface",
     "Profile",
     "RectLight",

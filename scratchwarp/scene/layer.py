@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from .checks import freeze, in_range, one_of, put
+from .normal_map import NormalMap
 
 SHAPES = ("flat", "vGroove", "rectangle", "trapezoid", "round", "quartic", "gaussian", "sine", "points")
 MODELS = (
@@ -76,6 +77,7 @@ class Layer:
             back, in the unit of length; 0: each scratch is alike all along.
         profile_end, profile_variation: another cross-section, and how far scratches go towards it at most, in [0, 1].
         extra: further attributes by schema name, as authored.
+        normal_map: of model normalMap.
     """
 
     name: str
@@ -113,6 +115,7 @@ class Layer:
     variation_length: float = 0.0
     profile_variation: float = 0.0
     profile_end: Profile | None = None
+    normal_map: NormalMap | None = None
 
     def __post_init__(self) -> None:
         who = self.label

@@ -2,7 +2,9 @@
 
 from dataclasses import dataclass
 
-from .checks import in_range, one_of
+import numpy as np
+
+from .checks import constant, freeze, in_range, one_of, put
 from .layer import Layer, Wave
 from .texture import TextureInput
 
@@ -69,11 +71,56 @@ class ScratchSurface:
 
 
 @dataclass(frozen=True, eq=False)
+class Measured:
+    """ScratchMeasuredAPI: a base in place of the surface, as highlight stencils or as the file of a measurement.
+
+    Attributes:
+        source: stencils or file. file: path of the measurement; format: auto, utia, merl or rgl.
+        azimuth [n] (radians, counter-clockwise from the tangent), width, a, b, kd, ks, alpha [n], color [n, 3]: of each
+            mode, the dominant one first.
+        beta, background, k, specular_alpha: of the whole model. retro: highlights return the light.
+        mask: smooth or binary.
+    """
+
+    source: str = "stencils"
+    file: str = ""
+    format: str = "auto"
+    azimuth: np.ndarray = constant(())
+    width: np.ndarray = constant(())
+    a: np.ndarray = constant(())
+    b: np.ndarray = constant(())
+    kd: np.ndarray = constant(())
+    ks: np.ndarray = constant(())
+    alpha: np.ndarray = constant(())
+    color: np.ndarray = constant(())
+    beta: float = 0.0
+    background: float = 0.0
+    k: float = 0.0
+    specular_alpha: float = 1.0
+    retro: bool = False
+    mask: str = "smooth"
+
+    def __post_init__(self) -> None:
+        owner = "ScratchMeasuredAPI"
+        one_of(owner, "source", self.source, ("stencils", "file"))
+        one_of(owner, "format", self.format, ("auto", "utia", "merl", "rgl"))
+        one_of(owner, "mask", self.mask, ("smooth", "binary"))
+        modes = len(self.azimuth)
+        for name in ("azimuth", "width", "a", "b", "kd", "ks", "alpha"):
+            put(self, **{name: freeze(owner, f"modes:{name}", getattr(self, name), (modes,))})
+        put(self, color=freeze(owner, "modes:color", np.reshape(self.color, (-1, 3)), (modes, 3)))
+
+
+@dataclass(frozen=True, eq=False)
 class Material:
-    """A base and its scratch layers (in the order in which they cut), and diffraction data if they diffract."""
+    """A base and its scratch layers (in the order in which they cut), and diffraction data if they diffract.
+
+    ``measured``: a base in place of ``surface``, which scratches that inherit still take after.
+    """
 
     path: str
     surface: PreviewSurface | ScratchSurface = PreviewSurface()
     layers: tuple[Layer, ...] = ()
     wave: Wave | None = None
     uses_display_color: bool = False
+    measured: Measured | None = None

@@ -9,7 +9,9 @@ from scratchwarp.scene import Layer, Profile, StageError, Wave
 
 from .color import color
 from .curves import CurveSets
+from .normal_map import read_normal_map
 from .reading import Reading
+from .texture import Textures
 
 _API = "ScratchLayerAPI:"
 _PREFIX = "scratch:layer:"
@@ -40,21 +42,23 @@ _TOKENS = {
 }
 _PROFILE_PARAMETERS = ("apex", "floorWidth", "sigma")
 _EXTRA = ("ends",)
-_UNHONOURED = ("maskTexture", "maskPrimvar", "orientationTexture", "orientationPrimvar", "normalTexture")
+_UNHONOURED = ("maskTexture", "maskPrimvar", "orientationTexture", "orientationPrimvar")
 
 
-def read_layers(reading: Reading, prim: Usd.Prim, curves: CurveSets) -> tuple[Layer, ...]:
+def read_layers(
+    reading: Reading, prim: Usd.Prim, curves: CurveSets, textures: Textures | None = None
+) -> tuple[Layer, ...]:
     """The enabled layers applied to a material, in cutting order: by ``order``, ties by name.
 
     Values that no layer can have raise StageError, naming the prim, the layer and the value.
     """
     names = [s.removeprefix(_API) for s in prim.GetAppliedSchemas() if s.startswith(_API)]
     enabled = [n for n in names if reading.value(prim, f"{_PREFIX}{n}:enabled", True)]
-    layers = [_layer(reading, prim, name, curves) for name in enabled]
+    layers = [_layer(reading, prim, name, curves, textures) for name in enabled]
     return tuple(sorted(layers, key=lambda layer: (layer.order, layer.name)))
 
 
-def _layer(reading: Reading, prim: Usd.Prim, name: str, curves: CurveSets) -> Layer:
+def _layer(reading: Reading, prim: Usd.Prim, name: str, curves: CurveSets, textures: Textures | None) -> Layer:
     def get(attribute: str, otherwise: Any = None) -> Any:
         return reading.value(prim, f"{_PREFIX}{name}:{attribute}", otherwise)
 
@@ -88,6 +92,7 @@ def _layer(reading: Reading, prim: Usd.Prim, name: str, curves: CurveSets) -> La
             cross_angle=float(np.radians(get("crossAngle"))),
             extra=extra,
             profile_end=_profile_end(reading, prim, name, where),
+            normal_map=read_normal_map(reading, where, get, textures),
             **fields,
             **tokens,
         )

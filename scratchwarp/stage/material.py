@@ -6,6 +6,7 @@ from scratchwarp.scene import Material, PreviewSurface, ScratchSurface
 
 from .curves import CurveSets
 from .layer import read_layers, read_wave
+from .measured import read_measured
 from .preview import read_preview
 from .reading import Reading, shared_path
 from .scratch_surface import read_scratch_surface
@@ -52,14 +53,13 @@ def read_material(reading: Reading, prim: Usd.Prim, textures: Textures, curves: 
     ScratchSurface nor UsdPreviewSurface is replaced, with a warning, by the default UsdPreviewSurface in displayColor.
     """
     surface, colored = _surface(reading, prim, textures)
-    if "ScratchMeasuredAPI" in prim.GetAppliedSchemas():
-        reading.warn(prim.GetPath(), "ScratchMeasuredAPI is not honoured; the surface is used")
     return Material(
         path=str(prim.GetPath()),
         surface=surface,
-        layers=read_layers(reading, prim, curves),
+        layers=read_layers(reading, prim, curves, textures),
         wave=read_wave(reading, prim),
         uses_display_color=colored,
+        measured=read_measured(reading, prim),
     )
 
 

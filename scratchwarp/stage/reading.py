@@ -104,7 +104,8 @@ def fits(value: Any, like: Any) -> bool:
         return isinstance(value, Real)
     if isinstance(like, str):
         return isinstance(value, str)
-    if isinstance(like, tuple) or type(like).__name__.startswith("Vec"):
+    kind = type(like).__name__
+    if isinstance(like, tuple) or (kind.startswith("Vec") and not kind.endswith("Array")):
         return not isinstance(value, str) and hasattr(value, "__len__") and len(value) == len(like)
     if hasattr(like, "__len__"):
         return hasattr(value, "__len__") and not isinstance(value, str)

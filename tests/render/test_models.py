@@ -6,9 +6,19 @@ import numpy as np
 import pytest
 
 import scratchwarp as sw
-from scratchwarp import mdf, profiles
+from scratchwarp import mdf, profiles, stencils
 from scratchwarp.kernels import kernel_key
-from scratchwarp.scene import Camera, Instance, Profile, RectLight, ScratchSurface
+from scratchwarp.scene import (
+    Camera,
+    Instance,
+    Material,
+    Measured,
+    NormalMap,
+    Profile,
+    RectLight,
+    ScratchSurface,
+    Texture,
+)
 
 from . import scenes
 
@@ -123,3 +133,62 @@ def test_lobes_under_a_lamp(size):
     noise = np.sqrt(film["variance"].sum()) / film["variance"].size / found.mean()
     assert wanted.min() > 1e-3 and noise < 0.02
     np.testing.assert_allclose(found, wanted, rtol=2e-3 + 4 * noise)
+
+
+def stencil_material(**fields):
+    """Two bright modes, which return more light than comes unless energy is conserved."""
+    modes = {"azimuth": (0.3, 1.4), "width": (0.4, 0.5), "a": (0.9, 0.9), "b": (0.05, 0.0), "kd": (0.1, 0.1)}
+    modes |= {"ks": (2.0, 1.0), "alpha": (9.0, 20.0), "color": ((1, 0.8, 0.5), (0.4, 0.6, 1)), "background": 0.3}
+    return Material("/measured", measured=Measured(**{**modes, **fields}))
+
+
+def mapped(**fields):
+    n = mdf.scratch_map(64, density=60, length=0.4, width=0.05, depth=0.25, direction=0.5, spread=0.2)
+    texture = Texture("/n", np.concatenate([0.5 * n + 0.5, np.ones((64, 64, 1))], axis=-1))
+    record = NormalMap(0, (3, 3), **fields)
+    return scenes.scratched(IRON, model="normalMap", normal_map=record, fresnel="mirror"), texture
+
+
+def test_other_responses_in_the_furnace():
+    """A stencil base and a scratch normal map return no more than came, between bodies along paths neither."""
+    layer, texture = mapped()
+    both = replace(stencil_material(), layers=(replace(layer.layers[0], normal_map=NormalMap(0), model="table"),))
+    materials = [stencil_material(), layer, both]
+    placed = [Instance(f"/{n}", 0, scenes.place(at=(1.3 * n - 1.3, 0, -6)).transform, (n,)) for n in range(3)]
+    world = scenes.scene(
+        [scenes.sphere(12, 24, radius=0.6)],
+        materials,
+        [scenes.dome()],
+        placed,
+        scenes.camera(30.0),
+        textures=(texture,),
+    )
+    plan = sw.make_plan(world)
+    assert plan.on("base.stencils") and plan.on("scratches.normalMap") and not plan.on("scratches.ashikhminShirley")
+    film = scenes.shoot(world, {}, width=48, height=24, spp=256, integrator="path", max_depth=6)
+    assert film.stats["invalid_samples"] == 0
+    assert (film["color"].max(-1) <= 1.0 + 1e-4 + 6 * np.sqrt(film["variance"])).all()
+    for number in range(3):
+        seen_there = film["primId"] == number
+        assert seen_there.sum() > 50 and 0.3 < film["color"][seen_there].mean() < 1.0
+    assert film["scratches"][film["primId"] == 0].max() == 0.0 and film["base"][film["primId"] == 1].max() == 0.0
+
+
+def test_stencils_as_rendered():
+    """One direction under a dome: the albedo of the model that conserves energy, turned with the mapping."""
+    world = scenes.scene([scenes.plane(9.0)], [stencil_material()], [scenes.dome()])
+    film = scenes.shoot(world, LEAN, width=8, height=8, spp=1024)
+    plan = sw.make_plan(world)
+    u = np.random.default_rng(0).random((200_000, 3))
+    wanted = stencils.sample(plan.responses[0].values, (0.0, 0.0, 1.0), u, energy_conserving=True).weight.mean(0)
+    # the corners are seen at 16 degrees
+    np.testing.assert_allclose(film["color"].mean((0, 1)), wanted, rtol=0.03)
+    lamp = RectLight(
+        path="/l", radiance=(9, 9, 9), center=(2, 0, -4), ex=(0, 0.1, 0), ey=(0, 0, 0.1), normal=(-1, 0, -1)
+    )
+    lit = [
+        scenes.shoot(scenes.scene([scenes.plane(9.0)], [stencil_material(azimuth=a)], [lamp]), LEAN, width=8, spp=64)
+        for a in ((0.0, 0.2), (np.pi / 2, np.pi / 2 - 0.2))
+    ]
+    # half vectors towards +x are off the axis of scratches along y
+    assert lit[1]["color"].mean() > 1.5 * lit[0]["color"].mean()

@@ -11,6 +11,8 @@ ATTRIBUTES = [
     ("background", "color3f", (0, 0, 0), 0, None, None, "none"),
     ("k", "float", 0.0, 0, None, None, "none"),
     ("specularAlpha", "float", 1.0, 0, None, None, "none"),
+    ("retro", "bool", False, None, None, None, None),
+    ("mask", "token", "smooth", None, None, "smooth binary", None),
     ("modes:azimuth", "float[]", [], None, None, None, "degree"),
     ("modes:width", "float[]", [], 0, 1, None, "none"),
     ("modes:a", "float[]", [], None, None, None, "none"),

@@ -27,6 +27,6 @@ def fitted(polyline: np.ndarray) -> Lobe:
     return Lobe("ashikhmin-shirley", ALONG, float(np.clip(across, 0.0, ALONG)))
 
 
-def pack(values: Sequence[Lobe], arrays: Any, device: str) -> None:
+def pack(values: Sequence[Lobe], arrays: Any, device: str, textures: Sequence[Any] = ()) -> None:
     """Put the lobes into ``arrays.facets``."""
     arrays.facets = wp.array([lobe.to_device() for lobe in values], dtype=DeviceLobe, device=device)

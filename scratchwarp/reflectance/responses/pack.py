@@ -1,6 +1,7 @@
 """Responses of a plan -> the arrays that the device reads."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -10,14 +11,23 @@ from . import RESPONSES, kind_number
 from .response_device import NODES, ResponseArrays, ResponseData
 
 
-def pack(plans: Sequence[Any], device: str = "cpu") -> ResponseArrays:
+@dataclass(frozen=True, eq=False)
+class PackedResponses:
+    """Device data, and what must outlive it."""
+
+    arrays: ResponseArrays
+    alive: tuple[Any, ...]
+
+
+def pack(plans: Sequence[Any], device: str = "cpu", textures: Sequence[Any] = ()) -> PackedResponses:
     """Device data of responses. Each has a ``name`` of ``RESPONSES``, ``values`` for its kind's ``pack`` and
-    ``fresnel``, a reflector of ``optics`` or None, which reflects everything."""
+    ``fresnel``, a reflector of ``optics`` or None, which reflects everything; ``textures``: the scene's."""
     names = [p.name for p in plans]
     arrays: Any = ResponseArrays()
     cosines = np.linspace(0.0, 1.0, NODES) ** 2
     records: list[Any] = []
     rows: list[np.ndarray] = []
+    alive: list[Any] = []
     for number, plan in enumerate(plans):
         name = plan.name
         r: Any = ResponseData()
@@ -34,5 +44,5 @@ def pack(plans: Sequence[Any], device: str = "cpu") -> ResponseArrays:
     for name, response in RESPONSES.items():
         own = [p.values for p in plans if p.name == name]
         if own:
-            response.pack(own, arrays, device)
-    return arrays
+            alive.append(response.pack(own, arrays, device, textures))
+    return PackedResponses(arrays, tuple(alive))

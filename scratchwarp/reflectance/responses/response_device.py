@@ -8,6 +8,7 @@ BaseSample``. One that varies over the surface has a third, ``place(arrays, at, 
 import warp as wp
 
 from ..mdf.lobe_device import Lobe
+from ..stencils.stencil_device import Stencil
 
 wp.set_module_options({"enable_backward": False})
 
@@ -27,8 +28,8 @@ class ResponseData:
 
 @wp.struct
 class ResponseAt:
-    """A response at a point; kind 0: none. The rest is for ``place`` to fill: a perturbed normal's x and y, widths of
-    the lobe, and the turn of its axes from the frame's."""
+    """A response at a point; kind 0: none. The rest is for ``place`` to fill: its own axes in the frame's tangent
+    plane, and in them a perturbed normal's x and y and widths of the lobe."""
 
     kind: int
     index: int
@@ -36,8 +37,8 @@ class ResponseAt:
     delta: wp.vec2
     x: float
     y: float
-    cos_turn: float
-    sin_turn: float
+    x_axis: wp.vec2
+    y_axis: wp.vec2
 
 
 @wp.struct
@@ -52,13 +53,40 @@ class Spot:
     v_axis: wp.vec2
 
 
+Moments = wp.types.vector(length=5, dtype=wp.float32)  # means of x, y, x^2, y^2, x y of normals
+
+
+@wp.struct
+class NormalMapData:
+    """A normal map and its facets; ``levels`` levels of its pyramid from ``first_level`` on, the finest first.
+
+    ``distribution`` and ``deformation`` are positions in ``mdf.DISTRIBUTIONS`` and ``mdf.KINDS``, -1: the normal is
+    turned and nothing deformed. ``x``, ``y``: widths along the frame's x and y; of Ashikhmin-Shirley, too.
+    """
+
+    first_level: int
+    levels: int
+    repeats: wp.vec2
+    distribution: int
+    deformation: int
+    x: float
+    y: float
+
+
 @wp.struct
 class ResponseArrays:
-    """All responses: ``reflectances [row, node]``, then the data of each kind."""
+    """All responses: ``reflectances [row, node]``, then the data of each kind.
+
+    ``levels``: (first texel, width, height) of each level of a pyramid, row 0 at the top.
+    """
 
     records: wp.array(dtype=ResponseData)
     reflectances: wp.array2d(dtype=wp.vec3)
     facets: wp.array(dtype=Lobe)
+    stencils: wp.array(dtype=Stencil)
+    maps: wp.array(dtype=NormalMapData)
+    levels: wp.array(dtype=wp.vec3i)
+    moments: wp.array(dtype=Moments)
 
 
 @wp.func
@@ -71,3 +99,17 @@ def facet_reflectance(arrays: ResponseArrays, row: int, cos_theta: float) -> wp.
         f = at - float(low)
         result = (1.0 - f) * arrays.reflectances[row, low] + f * arrays.reflectances[row, low + 1]
     return result
+
+
+@wp.func
+def to_axes(at: ResponseAt, w: wp.vec3) -> wp.vec3:
+    """A direction in the response's own axes."""
+    tangent = wp.vec2(w[0], w[1])
+    return wp.vec3(wp.dot(tangent, at.x_axis), wp.dot(tangent, at.y_axis), w[2])
+
+
+@wp.func
+def from_axes(at: ResponseAt, w: wp.vec3) -> wp.vec3:
+    """A direction of the response's own axes, in the frame."""
+    tangent = w[0] * at.x_axis + w[1] * at.y_axis
+    return wp.vec3(tangent[0], tangent[1], w[2])
