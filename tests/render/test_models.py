@@ -184,11 +184,17 @@ def test_stencils_as_rendered():
     # the corners are seen at 16 degrees
     np.testing.assert_allclose(film["color"].mean((0, 1)), wanted, rtol=0.03)
     lamp = RectLight(
-        path="/l", radiance=(9, 9, 9), center=(2, 0, -4), ex=(0, 0.1, 0), ey=(0, 0, 0.1), normal=(-1, 0, -1)
+        path="/l", radiance=(9, 9, 9), center=(2, 0, -4), ex=(0, 0.01, 0), ey=(0, 0, 0.01), normal=(-1, 0, 0)
     )
-    lit = [
-        scenes.shoot(scenes.scene([scenes.plane(9.0)], [stencil_material(azimuth=a)], [lamp]), LEAN, width=8, spp=64)
-        for a in ((0.0, 0.2), (np.pi / 2, np.pi / 2 - 0.2))
-    ]
-    # half vectors towards +x are off the axis of scratches along y
-    assert lit[1]["color"].mean() > 1.5 * lit[0]["color"].mean()
+    lit = []
+    for azimuth in ((0.0, 0.2), (np.pi / 2, np.pi / 2 - 0.2)):
+        material, near = stencil_material(azimuth=azimuth), scenes.camera(focal=5000.0)
+        world = scenes.scene([scenes.plane(9.0)], [material], [lamp], cam=near)
+        lit.append(scenes.shoot(world, LEAN, width=8, height=8, spp=64)["color"].mean((0, 1)))
+        direction, view = np.array([np.sqrt(0.5), 0.0, np.sqrt(0.5)]), (0.0, 0.0, 1.0)
+        model = sw.make_plan(world).responses[0].values
+        f = stencils.evaluate(model, direction, view, energy_conserving=True)
+        # the lamp of 4 cm^2 stands 2 sqrt(2) m away at 45 degrees to it and to the surface
+        np.testing.assert_allclose(lit[-1], f * 9 * 4e-4 * 0.5 / 8.0, rtol=0.02)
+    # half vectors towards +x are on the ridge of scratches along y
+    assert lit[1].min() > 5 * lit[0].min()

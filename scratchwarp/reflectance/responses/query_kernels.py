@@ -1,10 +1,8 @@
-"""The kernels behind ``query``, one pair for each kind of response."""
+"""The kernels behind ``query``, one pair for each kind of response, compiled when it is asked for."""
 
-from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
-import numpy as np
 import warp as wp
 
 from . import RESPONSES
@@ -26,43 +24,9 @@ def recorded(arrays: ResponseArrays) -> ResponseAt:
     return at
 
 
-@dataclass(frozen=True, eq=False)
-class Kernels:
-    """Evaluation and sampling of a kind."""
-
-    evaluating: Any
-    sampling: Any
-
-    def evaluate(self, arrays: Any, spot: Any, wi: np.ndarray, wo: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """f_r cos(theta_i) [n, 3] and densities [n]."""
-        value, pdf = wp.zeros(len(wi), dtype=wp.vec3, device="cpu"), wp.zeros(len(wi), dtype=float, device="cpu")
-        wp.launch(self.evaluating, len(wi), [arrays, spot, _vectors(wi), _vectors(wo)], [value, pdf], device="cpu")
-        return value.numpy(), pdf.numpy()
-
-    def sample(self, arrays: Any, spot: Any, wo: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Directions [n, 3], weights [n, 3], densities [n]."""
-        made = [wp.zeros(len(wo), dtype=d, device="cpu") for d in (wp.vec3, wp.vec3, float)]
-        wp.launch(self.sampling, len(wo), [arrays, spot, _vectors(wo), _vectors(u)], made, device="cpu")
-        return tuple(m.numpy() for m in made)
-
-
-def _vectors(values: np.ndarray) -> Any:
-    return wp.array(np.ascontiguousarray(values, np.float32), dtype=wp.vec3, device="cpu")
-
-
-def spot_at(uv: tuple[float, float], footprint: Any) -> Any:
-    """The spot of a surface whose frame lies along u and v."""
-    spot: Any = Spot()
-    spot.uv = wp.vec2d(*map(float, uv))
-    edges = np.asarray(footprint, np.float32).reshape(2, 2)
-    spot.jx, spot.jy = wp.vec2(*map(float, edges[0])), wp.vec2(*map(float, edges[1]))
-    spot.u_axis, spot.v_axis = wp.vec2(1.0, 0.0), wp.vec2(0.0, 1.0)
-    return spot
-
-
 @cache
-def kernels_of(name: str) -> Kernels:
-    """The kernels of a key of ``RESPONSES``."""
+def kernels_of(name: str) -> tuple[Any, Any]:
+    """(evaluation, sampling) of a key of ``RESPONSES``."""
     evaluated, drawn, placed = RESPONSES[name].functions()
 
     @wp.kernel(module="unique", module_options={"enable_backward": False})
@@ -101,4 +65,4 @@ def kernels_of(name: str) -> Kernels:
         weight[i] = s.weight
         pdf[i] = s.pdf
 
-    return Kernels(evaluate, sample)
+    return evaluate, sample
