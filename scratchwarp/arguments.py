@@ -196,7 +196,8 @@ _EXAMPLES = {
     "validate": "scratchwarp validate ball.usda\n  scratchwarp validate ball.usda --strict --json",
     "view": "scratchwarp view ball.usda\n  scratchwarp view ball.usda --screenshot look.png --frame 12\n"
     "  scratchwarp view ball.usda --web --port 8765\n"
-    "  scratchwarp view ball.usda --profile hairlines\n  scratchwarp view quartic",
+    "  scratchwarp view ball.usda --profile hairlines\n  scratchwarp view quartic\n"
+    "  scratchwarp view cloth.bin --screenshot cloth.png",
     "fit": "scratchwarp fit cloth.bin cloth.usda --report cloth\n  scratchwarp fit paint.binary paint.usda --modes 1\n"
     "  scratchwarp fit kettle.usda far.usda --material brass   # scratches seen from far away",
     "scratchmap": "scratchwarp scratchmap hairlines.png --direction 0 --spread 4 --density 900\n"
@@ -210,7 +211,7 @@ def parser() -> argparse.ArgumentParser:
     """The whole command line: ``args.command`` is the name of the function of ``cli`` to run."""
     from . import __version__
     from .pipelines import scratch_map
-    from .viewers import KEYS, PROFILE_KEYS
+    from .viewers import BRDF_KEYS, KEYS, PROFILE_KEYS
 
     whole = argparse.ArgumentParser(
         prog="scratchwarp",
@@ -278,9 +279,9 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("--strict", "-t", action="store_true", help="warnings count as errors")
 
     made = command("view", "show a stage, its scratches, profiles and tables in a window")
-    for title, keys in (("keys", KEYS), ("keys with --profile", PROFILE_KEYS)):
+    for title, keys in (("keys", KEYS), ("keys with --profile", PROFILE_KEYS), ("keys on a BRDF", BRDF_KEYS)):
         made.epilog = "\n".join([f"{made.epilog}\n", f"{title}:", *(f"  {key}  {what}" for key, what in keys.items())])
-    made.add_argument("stage", metavar="STAGE|SHAPE", help="USD file, or the name of a shape: its profile alone")
+    made.add_argument("stage", metavar="STAGE|SHAPE|BRDF", help="USD file, name of a shape, or file of a measurement")
     made.add_argument(
         "--profile", nargs="?", const="", metavar="LAYER", help="a layer's profile alone, with sliders [first]"
     )

@@ -171,7 +171,7 @@ def validate(args: Command) -> int:
 
 
 def view(args: Command) -> int:
-    """Open a window on STAGE or on one profile, or write the picture of one."""
+    """Open a window on STAGE, on one profile or on a measured BRDF, or write the picture of one."""
     from . import profiles, viewers
     from .frames import parse_frames
 
@@ -183,6 +183,11 @@ def view(args: Command) -> int:
         raise UsageError(f"--frame {args.frame!r} is {len(frames)} frames; a window shows one")
     options = {"width": args.imageWidth, "spp": args.spp}
     given = {name: value for name, value in options.items() if value is not None}
+    if Path(args.stage).suffix.lower() in viewers.BRDFS:
+        if given or args.profile is not None or args.depth is not None or args.frame or args.camera or args.web:
+            raise UsageError("a measured BRDF has neither frames nor cameras nor profiles; give --screenshot alone")
+        viewers.view_brdf(args.stage, args.screenshot)
+        return 0
     if args.web:
         if args.profile is not None or args.screenshot or args.depth is not None:
             raise UsageError("--web shows a whole stage; leave out --profile, --depth and --screenshot")

@@ -9,6 +9,8 @@ Files:
     tables         each layer's simulated table
     cross_sections profiles whose numbers can be turned
     live_profile   one of them in a window of its own, with sliders
+    live_brdf      a measured BRDF beside the stencils fitted to it, with sliders
+    lobes          reflectance as a surface in 3D
     image          the rendered image
     colors         one colour for each layer
     display        pyvista, and whether windows can be drawn here
@@ -24,7 +26,7 @@ Files:
 from pathlib import Path
 from typing import Any
 
-__all__ = ["KEYS", "PROFILE_KEYS", "view", "view_profile", "view_web"]
+__all__ = ["BRDFS", "BRDF_KEYS", "KEYS", "PROFILE_KEYS", "view", "view_brdf", "view_profile", "view_web"]
 
 # key -> what it does in the window, as --help prints it.
 KEYS = {
@@ -46,6 +48,33 @@ PROFILE_KEYS = {
     "g": "repeated for ever, or alone in flat ground",
     "q": "close the window",
 }
+
+
+# Endings of files that ``view_brdf`` shows.
+BRDFS = (".bin", ".binary", ".bsdf")
+
+# The same for the window of a measured BRDF.
+BRDF_KEYS = {
+    "n": "the sliders turn the next mode",
+    "r": "the fitted model again",
+    "b": "the measurement's lobe on or off",
+    "m": "the model's lobe on or off",
+    "q": "close the window",
+}
+
+
+def view_brdf(source: Path | str, screenshot: Path | str | None = None, **options: Any) -> None:
+    """Show a measured BRDF unfolded beside the stencils fitted to it, their difference, lobes in 3D, sliders for modes.
+
+    ``source`` is a UTIA .bin, MERL .binary or RGL .bsdf. ``options`` are those of
+    ``scratchwarp.viewers.live_brdf.view``: modes, refine, size. Raises as ``view`` does.
+    """
+    from .display import pyvista
+
+    pyvista()
+    from .live_brdf import view as show
+
+    show(source, screenshot, **options)
 
 
 def view_profile(source: Path | str, screenshot: Path | str | None = None, **options: Any) -> None:
