@@ -1,11 +1,34 @@
 """Grooves one by one: exact at any distance (Bosch, Pueyo, Merillou, Ghazanfarpour 2008); names load on first use.
 
-``masking`` (``masking_device``): what is seen and lit and shadowing in a cross-section.
+From NumPy: ``masking`` (what is seen and lit in a cross-section), ``pattern`` (paths and sections -> pieces),
+``footprint`` (mean radiance of an ellipse), ``section`` (checks). The device code, all float64 for a footprint may be a
+millionth of the uv square, in any one unit of length, with the plane z = 0 and z up:
+
+- ``solid_device``: ``GrooveSet``, pieces and vertices of a pattern (``Pattern(...).grooves``); whether a point is solid.
+- ``cast_device``: ``cast(grooves, ids, count, p, d, limit, anything)``, the first surface that a ray meets: distance,
+  normal, piece (-1 the ground). For bounces inside grooves, and shadow rays (``anything`` 1).
+- ``edges_device``: where what is seen may change along a line.
+- ``footprint_device``: ``make_footprint_mean(Material, radiance)`` gives ``mean(grooves, ids, count, footprint, o, i,
+  material, slices, chord)``; ``touches`` finds the pieces that a footprint needs, ``passes_through`` those that do not
+  end there.
+- ``facet_device``: ``FacetMaterial`` and ``facet_radiance``, what the NumPy entry point puts into it.
+- ``masking_device``: ``seen_fraction`` of one cross-section, alone or periodic.
+
+Contracts. ``ids[0 .. count - 1]`` are the pieces that matter, each once, in any order: at least those ``touches`` says
+yes to (more cost time, not truth); count 0 is flat ground. A kernel may keep them in ``wp.zeros(shape=64, dtype=int)``.
+Directions are unit and point away from the surface; ``o`` or ``i`` below the plane gives 0. ``mean`` returns radiance
+for unit perpendicular irradiance (cosine of each facet inside) and the share of the footprint in which a surface was
+found, 1 but for rounding. Its cost grows with edges times pieces times lines; one line where all grooves are parallel
+and none ends nearby.
 """
 
 from ...lazy import lazily
 
 _PUBLIC = {
+    "Diffuse": "footprint",
+    "GGX": "footprint",
+    "Pattern": "pattern",
+    "radiance": "footprint",
     "visibility": "masking",
 }
 

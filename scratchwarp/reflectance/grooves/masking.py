@@ -9,25 +9,9 @@ from numpy.typing import ArrayLike
 from ..vectors import numbers
 from . import masking_kernels as kernels
 from .masking_device import Section
+from .section import section_points
 
 GRAZING = 1e-7  # [rad] how near to the plane a direction is taken; nearer, the limit differs by less
-
-
-def section_points(name: str, points: ArrayLike) -> np.ndarray:
-    """``points`` checked as a cross-section [n, 2], n >= 2; ValueError naming ``name``.
-
-    x starts at its lowest and ends at its highest value, with some width between; the rest may overhang.
-    """
-    array = numbers(name, points)
-    if array.ndim != 2 or array.shape[1] != 2 or len(array) < 2:
-        raise ValueError(f"{name} must have shape [n, 2] with n of 2 and more, got {list(array.shape)}")
-    x = array[:, 0]
-    if not x[-1] > x[0]:
-        raise ValueError(f"{name} must run from left to right, got x = {x[0]:g} first and {x[-1]:g} last")
-    if x.min() < x[0] or x.max() > x[-1]:
-        worst = x.min() if x.min() < x[0] else x.max()
-        raise ValueError(f"{name} must keep between its first and last x, {x[0]:g} and {x[-1]:g}, got {worst:g}")
-    return array
 
 
 def _directions(name: str, theta: ArrayLike) -> np.ndarray:
@@ -67,12 +51,13 @@ def visibility(
         lead = np.broadcast_shapes(*(g.shape[:-1] for g in given))
     except ValueError:
         raise ValueError(
-            f"shapes of theta_o {np.shape(theta_o)} and theta_i {np.shape(theta_i)} do not broadcast"
+            f"shapes of theta_o and theta_i, {given[0].shape[:-1]} and {given[1].shape[:-1]}, do not broadcast"
         ) from None
     flat = [np.ascontiguousarray(np.broadcast_to(g, (*lead, 2))).reshape(-1, 2) for g in given]
     section = Section()
     section.points = wp.array(closed[keep], dtype=wp.vec2d, device="cpu")
     section.first, section.count = 0, int(keep.sum())
+    section.reach = 1 + int(np.ceil(max(p[0, 0] - p[:, 0].min(), p[:, 0].max() - p[-1, 0]) / width)) if periodic else 0
     section.period = wp.float64(width if periodic else 0.0)
     out = wp.zeros((len(flat[0]), len(facet)), dtype=wp.float64, device="cpu")
     arrays: list[Any] = [wp.array(f, dtype=wp.vec2d, device="cpu") for f in flat]

@@ -6,7 +6,8 @@ their common s where its r is the larger one. What is hidden from either directi
 facet; what is left is seen and lit. Height fields, walls and overhangs are all the same to this rule.
 
 In a periodic surface only the two neighbouring periods can hide: a ray that crosses one whole period in the air has all
-of that period's polyline below it, and so the next one's, for the ray rises.
+of that period's polyline below it, and so the next one's, for the ray rises. (Where a section is wider inside than at
+its ends, as many more as it reaches into.)
 """
 
 import warp as wp
@@ -16,12 +17,16 @@ wp.set_module_options({"enable_backward": False})
 
 @wp.struct
 class Section:
-    """One polyline: vertices ``points[first]`` to ``points[first + count - 1]``; ``period`` is 0 when it is alone."""
+    """One polyline: vertices ``points[first]`` to ``points[first + count - 1]``.
+
+    ``period`` is 0 when it is alone; ``reach``: how many periods to either side may hide it.
+    """
 
     points: wp.array(dtype=wp.vec2d)
     first: int
     count: int
     period: wp.float64
+    reach: int
 
 
 @wp.func
@@ -87,9 +92,7 @@ def next_free(section: Section, facet: int, d_o: wp.vec2d, d_i: wp.vec2d, jointl
     ``jointly`` 1: hidden neither from ``d_o`` nor from ``d_i``. Both must see the facet's outer side.
     """
     one = wp.float64(1.0)
-    reach = int(0)
-    if section.period > wp.float64(0.0):
-        reach = 1
+    reach = section.reach
     t0 = start
     t1 = wp.float64(1.0)
     searching = int(1)

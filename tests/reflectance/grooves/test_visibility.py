@@ -11,7 +11,8 @@ DOVETAIL = [[0, 0], [0.3, 0], [0.1, -0.6], [0.9, -0.5], [0.7, 0], [1, 0]]
 RIM = [[0, 0], [0.1, 0.2], [0.2, 0.25], [0.5, -0.6], [0.8, 0.15], [0.9, 0.1], [1, 0]]
 RIDGE = [[0, 0], [0.3, 0.9], [0.35, 0.9], [0.5, 0.2], [0.7, 0.5], [1, 0]]
 MUSHROOM = [[0, 0], [0.4, 0], [0.4, 0.3], [0.2, 0.35], [0.5, 0.8], [0.85, 0.4], [0.6, 0.3], [0.6, -0.2], [1, 0]]
-SECTIONS = {"v": V, "box": BOX, "dovetail": DOVETAIL, "rim": RIM, "ridge": RIDGE, "mushroom": MUSHROOM}
+CAVE = [[0, 0], [-0.1, -0.3], [0.5, -0.6], [0.8, 0]]
+SECTIONS = {"v": V, "box": BOX, "dovetail": DOVETAIL, "rim": RIM, "ridge": RIDGE, "mushroom": MUSHROOM, "cave": CAVE}
 ANGLES = np.radians([-85.0, -61.3, -30.0, 0.0, 17.0, 45.5, 72.0, 84.0])
 
 
@@ -129,7 +130,6 @@ def test_doubled_vertices_and_flat_ground():
     [
         ([[0, 0]], "shape"),
         ([[1, 0], [0, 0]], "left to right"),
-        ([[0, 0], [2, 0], [1, 0]], "between"),
         ([[0, np.nan], [1, 0]], "points"),
     ],
 )

@@ -1,0 +1,108 @@
+"""Rays against grooves: the first surface that a ray meets from outside.
+
+Every facet, end wall and the ground is tried. A crossing counts when the solid lies behind it and air before it
+(``solid_device.is_solid`` a skin off the surface to both sides), whatever pieces overlap there: intersections, ends and
+corners need no rule of their own.
+"""
+
+import warp as wp
+
+from .solid_device import GrooveSet, flat, in_stretch, is_solid
+
+wp.set_module_options({"enable_backward": False})
+
+
+@wp.struct
+class Crossing:
+    """Where a ray meets a surface: distance in units of the ray's direction (infinite: nowhere), unit normal, piece.
+
+    ``piece`` is -1 on the ground.
+    """
+
+    distance: wp.float64
+    normal: wp.vec3d
+    piece: int
+
+
+@wp.func
+def is_surface(
+    grooves: GrooveSet, ids: wp.array(dtype=int), count: int, q: wp.vec3d, n: wp.vec3d
+) -> bool:  # fmt: skip
+    """Whether ``q`` has the solid behind it and air before it, along the unit normal ``n``."""
+    return is_solid(grooves, ids, count, q - grooves.skin * n) and not is_solid(
+        grooves, ids, count, q + grooves.skin * n
+    )
+
+
+@wp.func
+def cast(
+    grooves: GrooveSet, ids: wp.array(dtype=int), count: int, p: wp.vec3d, d: wp.vec3d, limit: wp.float64, anything: int
+) -> Crossing:  # fmt: skip
+    """The first surface that the ray ``p + t d``, 0 < t < ``limit``, meets from its outer side.
+
+    ``anything`` 1: any surface will do (shadow rays). ``p`` must lie in the air, a skin off its own surface.
+    """
+    zero = wp.float64(0.0)
+    hit = Crossing()
+    hit.distance = wp.float64(wp.inf)
+    hit.piece = -1
+    best = limit
+    xy = flat(p)
+    dxy = flat(d)
+    if d[2] < zero:
+        t = -p[2] / d[2]
+        n = wp.vec3d(zero, zero, wp.float64(1.0))
+        if t > zero and t < best and is_surface(grooves, ids, count, p + t * d, n):
+            hit.distance = t
+            hit.normal = n
+            best = t
+    for a in range(count):
+        piece = grooves.pieces[ids[a]]
+        r = xy - piece.origin
+        x = wp.dot(r, piece.across)
+        dx = wp.dot(dxy, piece.across)
+        for j in range(piece.first, piece.first + piece.count - 1):
+            v = grooves.vertices[j]
+            e = grooves.vertices[j + 1] - v
+            facing = e[0] * d[2] - e[1] * dx
+            if facing < zero and (v[1] != zero or e[1] != zero) and not (anything == 1 and best == zero):
+                t = (e[0] * (v[1] - p[2]) - e[1] * (v[0] - x)) / facing
+                if t > zero and t < best:
+                    w = (x + t * dx - v[0]) * e[0] + (p[2] + t * d[2] - v[1]) * e[1]
+                    e2 = wp.dot(e, e)
+                    if w >= wp.float64(-1e-12) * e2 and w <= wp.float64(1.0 + 1e-12) * e2:
+                        if in_stretch(piece, r + t * dxy, wp.float64(0.25) * grooves.skin):
+                            m = e / wp.sqrt(e2)
+                            n = wp.vec3d(-m[1] * piece.across[0], -m[1] * piece.across[1], m[0])
+                            if is_surface(grooves, ids, count, p + t * d, n):
+                                hit.distance = t
+                                hit.normal = n
+                                hit.piece = ids[a]
+                                best = t
+            if grooves.mixed == 1 and v[1] == zero and dx != zero:
+                # the wall that an opening cuts into what other pieces pile up
+                t = (v[0] - x) / dx
+                if t > zero and t < best and p[2] + t * d[2] > zero and p[2] + t * d[2] < grooves.top:
+                    n = -wp.sign(dx) * wp.vec3d(piece.across[0], piece.across[1], zero)
+                    if is_surface(grooves, ids, count, p + t * d, n):
+                        hit.distance = t
+                        hit.normal = n
+                        hit.piece = ids[a]
+                        best = t
+        for end in range(2):
+            m = wp.where(end == 0, piece.end0, piece.end1)
+            reach = wp.where(end == 0, piece.reach0, piece.reach1)
+            wall = wp.where(end == 0, piece.cap0, piece.cap1)
+            dm = wp.dot(m, dxy)
+            if wall == 1 and dm != zero:
+                t = (reach - wp.dot(m, r)) / dm
+                if t > zero and t < best and p[2] + t * d[2] > grooves.bottom and p[2] + t * d[2] < grooves.top:
+                    n = -wp.sign(dm) * wp.vec3d(m[0], m[1], zero)
+                    if is_surface(grooves, ids, count, p + t * d, n):
+                        hit.distance = t
+                        hit.normal = n
+                        hit.piece = ids[a]
+                        best = t
+        if anything == 1 and hit.distance < limit:
+            best = zero
+    return hit

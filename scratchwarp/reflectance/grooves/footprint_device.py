@@ -1,0 +1,278 @@
+"""Mean radiance of a footprint over grooves: exact along lines, which are added up over the footprint's width.
+
+Along a line through the footprint everything is exact: the edges seen along the view direction part the line into
+spans on each of which one plane is seen (one ray a span tells which); the edges seen from that plane along the light's
+direction part the span into lit and dark ones (again one ray each). Where all grooves near a footprint run in parallel
+and end outside it, one line across them is the whole answer, each span weighted by the area of the ellipse over it
+(the exact form of Bosch et al. 2008, section 5). Elsewhere ``slices`` lines stand at the nodes of the Gauss-Chebyshev
+rule of the second kind, in a direction that keeps off those of the grooves (section 6 by lines in place of polygons).
+"""
+
+from typing import Any
+
+import warp as wp
+
+from .cast_device import cast
+from .edges_device import EVENTS, Line, gather_edges
+from .solid_device import GrooveSet, Piece
+
+wp.set_module_options({"enable_backward": False})
+
+PI = wp.constant(wp.float64(3.14159265358979323846))
+UNIFORM = wp.constant(0)  # weight along a line: even, or by the area of the ellipse over it
+CHORD = wp.constant(1)
+
+TRIED = wp.constant(16)  # directions of lines compared
+
+
+@wp.struct
+class Footprint:
+    """Ellipse center + disk point (a1, a2) in the plane z = 0."""
+
+    center: wp.vec2d
+    a1: wp.vec2d
+    a2: wp.vec2d
+
+
+@wp.struct
+class FootprintMean:
+    """Mean radiance, and the share of the footprint in which a surface was found (1 but for rounding)."""
+
+    radiance: wp.vec3d
+    found: wp.float64
+
+
+@wp.func
+def slope_of(d: wp.vec3d) -> wp.vec2d:
+    """(d_x, d_y) / d_z."""
+    return wp.vec2d(d[0] / d[2], d[1] / d[2])
+
+
+@wp.func
+def half_extent(f: Footprint, m: wp.vec2d) -> wp.float64:
+    """How far the ellipse reaches along a unit vector ``m``."""
+    x = wp.dot(f.a1, m)
+    y = wp.dot(f.a2, m)
+    return wp.sqrt(x * x + y * y)
+
+
+@wp.func
+def swept_range(grooves: GrooveSet, f: Footprint, slope_o: wp.vec2d, slope_i: wp.vec2d, m: wp.vec2d) -> wp.vec2d:
+    """Range of dot(m, x) of all that the footprint sees and that can hide it or stand in its light.
+
+    The ellipse, swept along the view from the lowest to the highest z, and up along the light by their difference.
+    """
+    zero = wp.float64(0.0)
+    o = wp.dot(slope_o, m)
+    i = wp.dot(slope_i, m) * (grooves.top - grooves.bottom)
+    reach = half_extent(f, m) + wp.float64(4.0) * grooves.skin
+    middle = wp.dot(f.center, m)
+    low = middle - reach + wp.min(grooves.bottom * o, grooves.top * o) + wp.min(i, zero)
+    high = middle + reach + wp.max(grooves.bottom * o, grooves.top * o) + wp.max(i, zero)
+    return wp.vec2d(low, high)
+
+
+@wp.func
+def touches(grooves: GrooveSet, piece: Piece, f: Footprint, slope_o: wp.vec2d, slope_i: wp.vec2d) -> bool:
+    """Whether a piece may be seen in a footprint, or hide or darken what is seen there."""
+    x = swept_range(grooves, f, slope_o, slope_i, piece.across) - wp.dot(piece.origin, piece.across) * wp.vec2d(
+        wp.float64(1.0), wp.float64(1.0)
+    )
+    result = x[0] <= piece.high[0] and x[1] >= piece.low[0]
+    if result:
+        e0 = swept_range(grooves, f, slope_o, slope_i, piece.end0)
+        e1 = swept_range(grooves, f, slope_o, slope_i, piece.end1)
+        result = (
+            e0[0] - wp.dot(piece.origin, piece.end0) <= piece.reach0
+            and e1[0] - wp.dot(piece.origin, piece.end1) <= piece.reach1
+        )
+    return result
+
+
+@wp.func
+def passes_through(grooves: GrooveSet, piece: Piece, f: Footprint, slope_o: wp.vec2d, slope_i: wp.vec2d) -> bool:
+    """Whether a piece ends nowhere near a footprint."""
+    e0 = swept_range(grooves, f, slope_o, slope_i, piece.end0)
+    e1 = swept_range(grooves, f, slope_o, slope_i, piece.end1)
+    return (
+        e0[1] - wp.dot(piece.origin, piece.end0) < piece.reach0
+        and e1[1] - wp.dot(piece.origin, piece.end1) < piece.reach1
+    )
+
+
+@wp.func
+def weight_below(b: wp.float64, weighting: int) -> wp.float64:
+    """Share of a line's weight below b in [-1, 1]."""
+    one = wp.float64(1.0)
+    result = wp.float64(0.5) * (b + one)
+    if weighting == CHORD:
+        q = wp.clamp(b, -one, one)
+        result = wp.float64(0.5) + (wp.asin(q) + q * wp.sqrt((one - q) * (one + q))) / PI
+    return result
+
+
+@wp.func
+def direction_of_lines(
+    grooves: GrooveSet, ids: wp.array(dtype=int), count: int, f: Footprint, slope_o: wp.vec2d, slope_i: wp.vec2d
+) -> wp.vec2d:  # fmt: skip
+    """The point of the unit disk towards which lines run: far from the grooves' and the walls' own directions."""
+    best = wp.float64(-1.0)
+    result = wp.vec2d(wp.float64(1.0), wp.float64(0.0))
+    for tried in range(TRIED):
+        angle = PI * (wp.float64(tried) + wp.float64(0.37)) / wp.float64(16.0)
+        w = wp.vec2d(wp.cos(angle), wp.sin(angle))
+        score = wp.float64(1.0)
+        first = grooves.pieces[ids[0]].along
+        for a in range(count + 2):
+            m = slope_o
+            if a == count + 1:
+                m = slope_i
+            if a < count:
+                m = grooves.pieces[ids[a]].along
+            # the direction on the disk that runs along m: A^-1 m, up to its length
+            t = wp.vec2d(m[0] * f.a2[1] - m[1] * f.a2[0], f.a1[0] * m[1] - f.a1[1] * m[0])
+            length = wp.length(t)
+            if length > wp.float64(0.0):
+                score = wp.min(score, wp.abs(t[0] * w[1] - t[1] * w[0]) / length)
+            # where two grooves cross, their facets meet about half way between
+            if a < count and wp.abs(wp.dot(m, first)) < wp.float64(0.999):
+                for sign in range(2):
+                    h = first + (wp.float64(1.0) - wp.float64(2.0) * wp.float64(sign)) * m
+                    t = wp.vec2d(h[0] * f.a2[1] - h[1] * f.a2[0], f.a1[0] * h[1] - f.a1[1] * h[0])
+                    length = wp.length(t)
+                    if length > wp.float64(0.0):
+                        score = wp.min(score, wp.abs(t[0] * w[1] - t[1] * w[0]) / length)
+        if score > best + wp.float64(0.01):
+            best = score
+            result = w
+    return result
+
+
+def make_footprint_mean(Material: Any, radiance: Any) -> Any:
+    """The device function ``mean(grooves, ids, count, footprint, o, i, material, slices, chord) -> FootprintMean``.
+
+    ``radiance(material: Material, n, o, i) -> vec3d`` gives what a facet of normal ``n`` sends to ``o`` under unit
+    perpendicular irradiance from ``i``; ``Material`` is its struct. ``ids[0 .. count - 1]``: every piece that
+    ``touches`` says yes to. ``chord`` 1 is exact, 0 Bosch's larger axis. Below the horizon nothing is seen or lit.
+    """
+
+    @wp.func
+    def line_mean(
+        grooves: GrooveSet, ids: wp.array(dtype=int), count: int, base: wp.vec2d, step: wp.vec2d, weighting: int,
+        o: wp.vec3d, i: wp.vec3d, material: Material,
+    ) -> FootprintMean:  # fmt: skip
+        zero = wp.float64(0.0)
+        one = wp.float64(1.0)
+        half = wp.float64(0.5)
+        result = FootprintMean()
+        slope_o = slope_of(o)
+        slope_i = slope_of(i)
+        seen_edges = wp.zeros(shape=EVENTS, dtype=wp.float64)
+        light_edges = wp.zeros(shape=EVENTS, dtype=wp.float64)
+        above = grooves.top + wp.float64(1.0e6) * grooves.skin
+        view = Line()
+        view.base = base
+        view.step = step
+        view.slope = slope_o
+        b = wp.float64(-1.0)
+        while b < one:
+            seen_count = gather_edges(grooves, ids, count, view, b, one, seen_edges)
+            for j in range(seen_count + 1):
+                b1 = one
+                if j < seen_count:
+                    b1 = seen_edges[j]
+                weight = weight_below(b1, weighting) - weight_below(b, weighting)
+                # of too many edges the last is where the next ones are asked for
+                if (j < EVENTS) and weight > wp.float64(1e-14):
+                    middle = half * (b + b1)
+                    x = base + middle * step
+                    top = wp.vec3d(x[0] + above * slope_o[0], x[1] + above * slope_o[1], above)
+                    down = wp.vec3d(-slope_o[0], -slope_o[1], -one)
+                    hit = cast(grooves, ids, count, top, down, wp.float64(wp.inf), 0)
+                    if hit.distance < wp.float64(wp.inf):
+                        result.found += weight
+                        n = hit.normal
+                        q = top + hit.distance * down
+                        if wp.dot(n, i) > zero and i[2] > wp.float64(1e-9):
+                            # z = at + b' rise on the plane; then the line as the light sees it
+                            facing = -wp.dot(n, down)
+                            rise = -(n[0] * step[0] + n[1] * step[1]) / facing
+                            at = q[2] - middle * rise
+                            light = Line()
+                            light.base = base + at * (slope_o - slope_i)
+                            light.step = step + rise * (slope_o - slope_i)
+                            light.slope = slope_i
+                            lit = zero
+                            c = b
+                            while c < b1:
+                                light_count = gather_edges(grooves, ids, count, light, c, b1, light_edges)
+                                for k in range(light_count + 1):
+                                    c1 = b1
+                                    if k < light_count:
+                                        c1 = light_edges[k]
+                                    part = weight_below(c1, weighting) - weight_below(c, weighting)
+                                    if (k < EVENTS) and part > wp.float64(1e-14):
+                                        m = half * (c + c1)
+                                        z = at + m * rise
+                                        y = base + m * step + z * slope_o
+                                        p = wp.vec3d(y[0], y[1], z) + wp.float64(2.0) * grooves.skin * n
+                                        up = wp.vec3d(slope_i[0], slope_i[1], one)
+                                        limit = grooves.top - z + grooves.skin
+                                        dark = cast(grooves, ids, count, p, up, limit, 1)
+                                        if dark.distance == wp.float64(wp.inf):
+                                            lit += part
+                                    if k < EVENTS:
+                                        c = c1
+                            result.radiance += lit * radiance(material, n, o, i)
+                if j < EVENTS:
+                    b = b1
+        return result
+
+    @wp.func
+    def mean(
+        grooves: GrooveSet, ids: wp.array(dtype=int), count: int, f: Footprint, o: wp.vec3d, i: wp.vec3d,
+        material: Material, slices: int, chord: int,
+    ) -> FootprintMean:  # fmt: skip
+        zero = wp.float64(0.0)
+        one = wp.float64(1.0)
+        result = FootprintMean()
+        if o[2] > wp.float64(1e-9):
+            if count == 0:
+                result.found = one
+                if i[2] > wp.float64(1e-9):
+                    result.radiance = radiance(material, wp.vec3d(zero, zero, one), o, i)
+            else:
+                slope_o = slope_of(o)
+                slope_i = wp.vec2d(zero, zero)
+                if i[2] > wp.float64(1e-9):
+                    slope_i = slope_of(i)
+                first = grooves.pieces[ids[0]]
+                parallel = bool(True)
+                for a in range(count):
+                    piece = grooves.pieces[ids[a]]
+                    turn = piece.along[0] * first.along[1] - piece.along[1] * first.along[0]
+                    if wp.abs(turn) > wp.float64(1e-12) or not passes_through(grooves, piece, f, slope_o, slope_i):
+                        parallel = False
+                if parallel:
+                    m = first.across
+                    reach = half_extent(f, m)
+                    if chord == 1:
+                        result = line_mean(grooves, ids, count, f.center, reach * m, CHORD, o, i, material)
+                    else:
+                        reach = wp.max(wp.abs(wp.dot(f.a1, m)), wp.abs(wp.dot(f.a2, m)))
+                        result = line_mean(grooves, ids, count, f.center, reach * m, UNIFORM, o, i, material)
+                else:
+                    w = direction_of_lines(grooves, ids, count, f, slope_o, slope_i)
+                    along = w[0] * f.a1 + w[1] * f.a2
+                    across = w[0] * f.a2 - w[1] * f.a1
+                    for k in range(slices):
+                        angle = PI * wp.float64(k + 1) / wp.float64(slices + 1)
+                        share = wp.float64(2.0) * wp.sin(angle) * wp.sin(angle) / wp.float64(slices + 1)
+                        base = f.center + wp.cos(angle) * across
+                        step = wp.sin(angle) * along
+                        part = line_mean(grooves, ids, count, base, step, UNIFORM, o, i, material)
+                        result.radiance += share * part.radiance
+                        result.found += share * part.found
+        return result
+
+    return mean

@@ -1,0 +1,191 @@
+"""Patterns of grooves: paths and cross-sections, cut into straight pieces for the device."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import warp as wp
+from numpy.typing import ArrayLike
+
+from ..vectors import numbers
+from .section import closed_section, height_at, section_points
+from .solid_device import GrooveSet, Piece
+
+ENDS = ("cap", "mitre")
+
+_SKIN = 1e-9  # of the largest length of a profile: how far off a surface its two sides are looked at
+_STRAIGHT = 1e-12  # sine of the largest turn at a vertex that is none
+
+
+@dataclass(frozen=True)
+class Groove:
+    """One path without doubled or straight vertices: points [k, 2], its closed section [n, 2], whether it is a loop."""
+
+    points: np.ndarray
+    section: np.ndarray
+    loop: bool
+
+
+def _turn(a: np.ndarray, b: np.ndarray) -> float:
+    return float(a[0] * b[1] - a[1] * b[0])
+
+
+def _is_straight(a: np.ndarray, b: np.ndarray) -> bool:
+    return abs(_turn(a, b)) <= _STRAIGHT and float(a @ b) > 0.0
+
+
+def _tangents(points: np.ndarray) -> np.ndarray:
+    step = np.diff(points, axis=0)
+    return step / np.linalg.norm(step, axis=1, keepdims=True)
+
+
+def _simplified(path: np.ndarray) -> np.ndarray:
+    """Without zero-length segments, then without vertices in which the path goes straight on."""
+    points = path[np.concatenate([[True], np.any(np.diff(path, axis=0) != 0.0, axis=1)])]
+    if len(points) < 3:
+        return points
+    t = _tangents(points)
+    keep = [True, *(not _is_straight(a, b) for a, b in zip(t[:-1], t[1:], strict=True)), True]
+    return points[keep]
+
+
+def _joined(paths: list[tuple[np.ndarray, np.ndarray]]) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Paths that go straight on where another one of the same section ends, made one."""
+    done = list(paths)
+    k = 0
+    while k < len(done):
+        points, section = done[k]
+        for j, (other, same) in enumerate(done):
+            if j == k or section.shape != same.shape or not np.array_equal(section, same):
+                continue
+            if np.array_equal(points[-1], other[0]) and _is_straight(_tangents(points)[-1], _tangents(other)[0]):
+                done[k] = (_simplified(np.concatenate([points, other[1:]])), section)
+                del done[j]
+                k = -1
+                break
+        k += 1
+    return done
+
+
+class Pattern:
+    """Grooves along paths in the plane z = 0.
+
+    Args:
+        paths: polylines [k, 2], any one unit of length. A path whose last point repeats its first is a loop.
+        profiles: a section [n, 2] for each path, or one for all: (x, z), the same unit. x runs along v = n x u, u the
+            path's direction, from the path as the points say (x may be negative); z = 0 is the plane, below it the
+            groove digs, above it stands out. From left to right; overhangs are allowed.
+        ends: "cap", a vertical wall at the end point; "mitre", beyond it as far as the profile reaches in x, with
+            height max(f(x), f(y)), y the distance beyond (min where the profile only stands out).
+
+    Corners are mitred. Where grooves cross, the lower height counts where both dig in, the higher where both stand out,
+    and what one digs cuts what another piles up. Paths that go straight on from another's end, with the same section,
+    are one path. Raises ValueError naming the argument.
+
+    Attributes:
+        grooves: what the device takes (``solid_device.GrooveSet``); memory: its bytes.
+    """
+
+    def __init__(self, paths: Sequence[ArrayLike], profiles: Any, ends: str = "cap") -> None:
+        if ends not in ENDS:
+            raise ValueError(f"ends must be one of {', '.join(ENDS)}, got {ends!r}")
+        given = [numbers(f"paths[{i}]", p) for i, p in enumerate(paths)]
+        for i, p in enumerate(given):
+            if p.ndim != 2 or p.shape[1] != 2 or len(p) < 1:
+                raise ValueError(f"paths[{i}] must have shape [k, 2], got {list(p.shape)}")
+        sections = self._sections(profiles, len(given))
+        pairs = [(_simplified(p), s) for p, s in zip(given, sections, strict=True)]
+        pairs = _joined([(p, s) for p, s in pairs if len(p) > 1])
+        self.ends = ends
+        self.paths = tuple(self._groove(p, s) for p, s in pairs)
+        self.grooves = self._pack()
+
+    @staticmethod
+    def _sections(profiles: Any, count: int) -> list[np.ndarray]:
+        try:
+            single = np.asarray(profiles, np.float64).ndim == 2
+        except (TypeError, ValueError):
+            single = False
+        several = [profiles] * count if single else list(profiles)
+        if len(several) != count:
+            raise ValueError(f"profiles must be one for each of the {count} paths, got {len(several)}")
+        return [closed_section(section_points(f"profiles[{i}]", p)) for i, p in enumerate(several)]
+
+    @staticmethod
+    def _groove(points: np.ndarray, section: np.ndarray) -> Groove:
+        loop = len(points) > 3 and bool(np.array_equal(points[0], points[-1]))
+        if loop:
+            t = _tangents(points)
+            if _is_straight(t[-1], t[0]):  # starts amid a straight stretch: start at a corner
+                points = np.concatenate([points[1:-1], points[1:2]])
+        return Groove(points, section, loop)
+
+    def _pack(self) -> GrooveSet:
+        pieces: list[dict[str, Any]] = []
+        vertices: list[np.ndarray] = []
+        known: dict[bytes, int] = {}
+        total = 0
+        for number, groove in enumerate(self.paths):
+            key = groove.section.tobytes()
+            if key not in known:
+                known[key] = total
+                vertices.append(groove.section)
+                total += len(groove.section)
+            for piece in self._pieces(groove, len(pieces)):
+                low, high = groove.section.min(0), groove.section.max(0)
+                pieces.append(
+                    {**piece, "first": known[key], "count": len(groove.section), "low": low, "high": high}
+                    | {"path": number}
+                )
+        z = np.concatenate([v[:, 1] for v in vertices]) if vertices else np.zeros(1)
+        x = np.concatenate([v[:, 0] for v in vertices]) if vertices else np.ones(1)
+        record: Any = Piece
+        table = np.zeros(len(pieces), dtype=record.numpy_dtype())
+        for k, piece in enumerate(pieces):
+            for name, value in piece.items():
+                table[name][k] = value
+        made = GrooveSet()
+        made.pieces = wp.array(table, dtype=Piece, device="cpu")
+        corners = np.concatenate(vertices) if vertices else np.zeros((0, 2))
+        made.vertices = wp.array(corners, dtype=wp.vec2d, device="cpu")
+        made.bottom, made.top = wp.float64(min(z.min(), 0.0)), wp.float64(max(z.max(), 0.0))
+        made.skin = wp.float64(_SKIN * max(np.abs(z).max(), np.abs(x).max()))
+        made.mixed = int(z.min() < 0.0 < z.max())
+        self.memory = table.nbytes + corners.nbytes
+        return made
+
+    def _pieces(self, groove: Groove, first: int) -> list[dict[str, Any]]:
+        p, section = groove.points, groove.section
+        t = _tangents(p)
+        pieces = []
+        last = len(t) - 1
+        for k, along in enumerate(t):
+            here = [(p[k], t[k - 1] if k > 0 or groove.loop else None, -1.0)]
+            here.append((p[k + 1], t[(k + 1) % len(t)] if k < last or groove.loop else None, 1.0))
+            piece: dict[str, Any] = {
+                "origin": p[k], "along": along, "across": (-along[1], along[0]), "partner": -1,
+            }  # fmt: skip
+            for end, (point, neighbour, sign) in enumerate(here):
+                normal, cap = sign * along, 1
+                if neighbour is not None and np.linalg.norm(along + neighbour) > 1e-6:
+                    normal, cap = sign * (along + neighbour) / np.linalg.norm(along + neighbour), 0
+                elif neighbour is None and self.ends == "mitre":
+                    cap = int(not self._goes_on(section))
+                piece |= {f"end{end}": normal, f"reach{end}": float((point - p[k]) @ normal), f"cap{end}": cap}
+            pieces.append(piece)
+        if self.ends == "mitre" and not groove.loop and section[:, 0].max() > 0.0:
+            for point, along, out in ((p[0], t[0], -t[0]), (p[-1], t[-1], t[-1])):
+                across = np.array([-along[1], along[0]])
+                number = first + len(pieces)
+                ends = {"end0": -out, "reach0": 0.0, "cap0": 0, "end1": out, "reach1": section[:, 0].max(), "cap1": 0}
+                pieces.append({"origin": point, "along": out, "across": across, "partner": number + 1, **ends})
+                pieces.append({"origin": point, "along": -across, "across": out, "partner": number, **ends})
+        return pieces
+
+    @staticmethod
+    def _goes_on(section: np.ndarray) -> bool:
+        """Whether a mitred end starts with the whole section, for its middle is the deepest (or the highest) part."""
+        middle = height_at(section, 0.0)
+        extreme = section[:, 1].min() if section[:, 1].min() < 0.0 else section[:, 1].max()
+        return abs(middle - extreme) <= 1e-12 * abs(extreme)

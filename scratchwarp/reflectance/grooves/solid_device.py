@@ -1,0 +1,159 @@
+"""The solid that grooves leave: pieces of grooves, and whether a point lies inside.
+
+A piece is a straight stretch of a groove: its profile, extruded along ``along``, between two vertical end planes. Below
+z = 0 the solid is what no piece digs away, so the lower height wins; above, what any piece adds, so the higher one
+wins; what one piece digs through the plane also cuts away what other pieces pile up over it. Nothing of this depends on
+the order of the pieces. A mitred end is two pieces across each other, ``partner`` of one another, that dig where both
+do.
+"""
+
+import warp as wp
+
+wp.set_module_options({"enable_backward": False})
+
+
+@wp.struct
+class Piece:
+    """A straight stretch of a groove.
+
+    A point at ``r`` from ``origin`` has profile x = dot(r, across); it belongs to the stretch where dot(r, end0) <=
+    reach0 and dot(r, end1) <= reach1 (unit normals outwards). ``cap0``, ``cap1``: 1 where a wall may stand at that end.
+    ``first``, ``count``: its vertices. ``low``, ``high``: smallest and largest x and z of the profile. ``partner``: the
+    other piece of a mitred end, or -1. ``path``: the groove it belongs to.
+    """
+
+    origin: wp.vec2d
+    along: wp.vec2d
+    across: wp.vec2d
+    end0: wp.vec2d
+    end1: wp.vec2d
+    low: wp.vec2d
+    high: wp.vec2d
+    reach0: wp.float64
+    reach1: wp.float64
+    first: int
+    count: int
+    cap0: int
+    cap1: int
+    partner: int
+    path: int
+
+
+@wp.struct
+class GrooveSet:
+    """All pieces of a pattern and the vertices (x, z) of their profiles.
+
+    No profile facet crosses z = 0. ``bottom`` <= 0 <= ``top``: the lowest and highest z; ``skin``: the length by which
+    a point is moved off a surface to see what lies on its sides; ``mixed``: 1 where something digs and something piles
+    up.
+    """
+
+    pieces: wp.array(dtype=Piece)
+    vertices: wp.array(dtype=wp.vec2d)
+    bottom: wp.float64
+    top: wp.float64
+    skin: wp.float64
+    mixed: int
+
+
+@wp.func
+def flat(p: wp.vec3d) -> wp.vec2d:
+    """x and y."""
+    return wp.vec2d(p[0], p[1])
+
+
+@wp.func
+def in_stretch(piece: Piece, r: wp.vec2d, slack: wp.float64) -> bool:
+    """Whether ``r`` from the piece's origin lies between its end planes."""
+    return wp.dot(r, piece.end0) <= piece.reach0 + slack and wp.dot(r, piece.end1) <= piece.reach1 + slack
+
+
+@wp.func
+def is_dug(vertices: wp.array(dtype=wp.vec2d), piece: Piece, x: wp.float64, z: wp.float64) -> bool:
+    """Whether the profile leaves air at (x, z), z <= 0: an odd number of facets below."""
+    zero = wp.float64(0.0)
+    below = int(0)
+    if x >= piece.low[0] and x <= piece.high[0] and z > piece.low[1]:
+        for j in range(piece.first, piece.first + piece.count - 1):
+            a = vertices[j]
+            b = vertices[j + 1]
+            if a[1] <= zero and b[1] <= zero and (a[0] <= x) != (b[0] <= x):
+                if a[1] + (b[1] - a[1]) * (x - a[0]) / (b[0] - a[0]) < z:
+                    below = 1 - below
+    return below == 1
+
+
+@wp.func
+def is_piled(vertices: wp.array(dtype=wp.vec2d), piece: Piece, x: wp.float64, z: wp.float64) -> bool:
+    """Whether the profile piles solid up at (x, z), z >= 0: an odd number of facets above."""
+    zero = wp.float64(0.0)
+    above = int(0)
+    if x >= piece.low[0] and x <= piece.high[0] and z < piece.high[1]:
+        for j in range(piece.first, piece.first + piece.count - 1):
+            a = vertices[j]
+            b = vertices[j + 1]
+            if a[1] >= zero and b[1] >= zero and (a[0] <= x) != (b[0] <= x):
+                if a[1] + (b[1] - a[1]) * (x - a[0]) / (b[0] - a[0]) > z:
+                    above = 1 - above
+    return above == 1
+
+
+@wp.func
+def digs_at(grooves: GrooveSet, k: int, xy: wp.vec2d, z: wp.float64) -> bool:
+    """Whether piece ``k`` digs away the point (xy, z), z <= 0; at z = 0: whether it opens the plane there."""
+    piece = grooves.pieces[k]
+    result = bool(False)
+    r = xy - piece.origin
+    x = wp.dot(r, piece.across)
+    if x >= piece.low[0] and x <= piece.high[0] and in_stretch(piece, r, wp.float64(0.25) * grooves.skin):
+        result = is_dug(grooves.vertices, piece, x, z)
+        if result and piece.partner >= 0:
+            other = grooves.pieces[piece.partner]
+            result = is_dug(grooves.vertices, other, wp.dot(xy - other.origin, other.across), z)
+    return result
+
+
+@wp.func
+def piles_at(grooves: GrooveSet, k: int, xy: wp.vec2d, z: wp.float64) -> bool:
+    """Whether piece ``k`` piles solid up at the point (xy, z), z >= 0.
+
+    At a mitred end the higher of the two profiles counts where they also dig (a rim goes round the end), else the
+    lower one.
+    """
+    piece = grooves.pieces[k]
+    result = bool(False)
+    r = xy - piece.origin
+    x = wp.dot(r, piece.across)
+    if x >= piece.low[0] and x <= piece.high[0] and in_stretch(piece, r, wp.float64(0.25) * grooves.skin):
+        result = is_piled(grooves.vertices, piece, x, z)
+        if piece.partner >= 0:
+            other = grooves.pieces[piece.partner]
+            y = wp.dot(xy - other.origin, other.across)
+            also = is_piled(grooves.vertices, other, y, z)
+            if piece.low[1] < wp.float64(0.0):
+                result = (result or also) and y >= other.low[0] and y <= other.high[0]
+            else:
+                result = result and also
+    return result
+
+
+@wp.func
+def is_solid(grooves: GrooveSet, ids: wp.array(dtype=int), count: int, p: wp.vec3d) -> bool:
+    """Whether ``p`` lies in the solid, as far as the pieces ``ids[0]`` to ``ids[count - 1]`` tell."""
+    zero = wp.float64(0.0)
+    xy = flat(p)
+    result = bool(p[2] < zero)
+    if result:
+        for a in range(count):
+            if result and digs_at(grooves, ids[a], xy, p[2]):
+                result = False
+    elif p[2] < grooves.top:
+        for a in range(count):
+            if not result and piles_at(grooves, ids[a], xy, p[2]):
+                result = bool(True)
+                if grooves.mixed == 1:
+                    for c in range(count):
+                        own = ids[c] == ids[a] or ids[c] == grooves.pieces[ids[a]].partner
+                        if result and not own and digs_at(grooves, ids[c], xy, zero):
+                            result = False
+    return result
