@@ -4,7 +4,7 @@ From NumPy: ``masking`` (what is seen and lit in a cross-section), ``pattern`` (
 ``footprint`` (mean radiance of an ellipse), ``section`` (checks). The device code, all float64 for a footprint may be a
 millionth of the uv square, in any one unit of length, with the plane z = 0 and z up:
 
-- ``solid_device``: ``GrooveSet``, pieces and vertices of a pattern (``Pattern(...).grooves``); whether a point is solid.
+- ``solid_device``: ``GrooveSet``, pieces and vertices (``Pattern(...).grooves``); whether a point is solid.
 - ``cast_device``: ``cast(grooves, ids, count, p, d, limit, anything)``, the first surface that a ray meets: distance,
   normal, piece (-1 the ground). For bounces inside grooves, and shadow rays (``anything`` 1).
 - ``edges_device``: where what is seen may change along a line.
