@@ -39,6 +39,7 @@ def add_settings(parser: argparse.ArgumentParser) -> None:
     group.add_argument("--maxError", type=float, help="of the albedo of scratches [0.01]")
     group.add_argument("--integrator", help="direct or path")
     group.add_argument("--maxDepth", type=int, help="surfaces that a path may meet")
+    group.add_argument("--coneTaps", type=int, help="look-ups into a dome's image along the cone of a scratch [16]")
     group.add_argument("--filter", help="box, gaussian or blackmanHarris")
     group.add_argument("--filterWidth", type=float, metavar="PIXELS", help="full width of the filter")
     group.add_argument(
@@ -76,6 +77,7 @@ def settings(args: argparse.Namespace) -> "Settings":
             max_error=args.maxError,
             integrator=args.integrator,
             max_depth=args.maxDepth,
+            cone_taps=args.coneTaps,
             filter=args.filter,
             filter_width=args.filterWidth,
             crop=tuple(args.crop) if args.crop else None,

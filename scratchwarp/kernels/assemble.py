@@ -16,6 +16,7 @@ from ..reflectance.responses.pack import pack as pack_responses
 from ..reflectance.texture import pack_textures
 from ..scene import MeshLight, Scene
 from ..scene.digest import digest
+from ..scene.light import Light as LightRecord
 from ..scratches import KINDS, curves
 from . import geometry, glints, material
 from .camera_device import CameraData
@@ -42,6 +43,13 @@ class Assembled:
 def light_kinds(plan: EffectPlan) -> tuple[str, ...]:
     """Kinds of light that are on, in the registry's order."""
     return tuple(m.name for m in lights.MODELS.values() if plan.on(f"lights.{m.name}"))
+
+
+def uneven(light: LightRecord) -> bool:
+    """Whether the radiance of a light that is integrated along cones varies over its extent."""
+    return lights.MODELS[type(light)].arcs is not None and (
+        light.shaping is not None or getattr(light, "texture", -1) >= 0
+    )
 
 
 def kernel_key(scene: Scene, plan: EffectPlan) -> KernelKey:
@@ -74,6 +82,10 @@ def kernel_key(scene: Scene, plan: EffectPlan) -> KernelKey:
         path=on("indirect"),
         **_glint_fields(plan),
         responses=tuple(n for n, r in RESPONSES.items() if on(r.effect) and (distributions or r.base)),
+        closed_form=bool(distributions) and on("lights.closedForm"),
+        cone_taps=bool(distributions) and on("lights.closedForm") and any(uneven(light) for light in scene.lights),
+        sample_lights=bool(distributions) and on("lights.sampleLights"),
+        sample_cones=bool(distributions) and on("lights.sampleCones"),
     )
 
 
@@ -122,8 +134,8 @@ def assemble(
     placed = tuple((i.mesh, i.transform.tobytes(), i.materials, i.light) for i in scene.instances)
     packed = parts.part(
         "lights",
-        (digest(scene.lights), scene.textures, (placed, scene.meshes) if with_mesh_lights else ()),
-        lambda: lights.pack(scene, device),
+        (digest(scene.lights), scene.textures, (placed, scene.meshes) if with_mesh_lights else (), key.cone_taps),
+        lambda: lights.pack(scene, device, filtered=key.cone_taps),
     )
     kinds = [k for k in packed.kinds if k in key.lights]
     order = {name: i for i, name in enumerate(key.lights)}
@@ -179,9 +191,13 @@ def assemble(
     light_set.starts = wp.array(starts, dtype=int, device=device)
     light_set.links = wp.array(links, dtype=wp.uint8, device=device)
     light_set.arrays = packed.arrays
+    light_set.taps = plan.settings.cone_taps or 1
+    light_set.tap_width = 0.5 / (plan.settings.spp or 1)
     scratch_set.layers, scratch_set.segments = stuff.layers, strokes
+    last = parts.last("tables")
+    earlier = None if last is None or last[0][0] != key.closed_form else (last[0][1:], last[1])
     scratch_set.tables = parts.part(
-        "tables", tuple(tables), lambda: profile_table.pack(tables, device, parts.last("tables"))
+        "tables", (key.closed_form, *tables), lambda: profile_table.pack(tables, device, earlier, key.closed_form)
     )
     used = plan.responses if key.responses else ()
     responding = parts.part(

@@ -226,10 +226,14 @@ def make_bounce(key: KernelKey, rotated, emission_at):
             if wp.static(key.scratches):
                 if lobe.scratch == 1:
                     other = 0.0
-                    f = lobe.frame
-                    span = span_mesh(lights.arrays, lights.lights[s.light], origin, f.x, f.y, f.n, lobe.sin_theta)
-                    if span.ok == 1 and phi >= span.lo and phi <= span.hi:
-                        other = 1.0 / wp.max(span.hi - span.lo, 1.0e-7)
+                    if wp.static(key.sample_lights):
+                        f = lobe.frame
+                        span = span_mesh(lights.arrays, lights.lights[s.light], origin, f.x, f.y, f.n, lobe.sin_theta)
+                        if span.ok == 1 and phi >= span.lo and phi <= span.hi:
+                            other = 1.0 / wp.max(span.hi - span.lo, 1.0e-7)
+                    if wp.static(not key.sample_cones):
+                        other = 0.0
+                        weight = 0.0
             if other > 0.0:
                 weight = power_heuristic(pdf, other)
         radiance = hit.radiance * weight

@@ -22,6 +22,7 @@ from ..reflectance.profile_table_device import (
     table_value,
 )
 from ..reflectance.responses.response_device import ResponseArrays
+from .cone_device import make_cone_lights
 from .geometry_device import Geometry, interpolate_uv, intersect
 from .key import KernelKey
 from .lobe_device import Lobe, largest, mirrored_at, multiplier, power_heuristic
@@ -78,6 +79,9 @@ def make_direct(key: KernelKey, transmittance):
     finite = [model.name != "dome" for model in models]
     of_mesh = [model.geometry for model in models]
     terms_of, _ = make_lobe_terms(key)
+    integrated = [key.closed_form and model.arcs is not None for model in models]
+    # a dome is all around: cones find it
+    sought = [key.sample_lights and (near or not key.sample_cones) for near in finite]
 
     @wp.func
     def linked(lights: LightSet, light: Light, instance: int) -> bool:
@@ -101,6 +105,8 @@ def make_direct(key: KernelKey, transmittance):
             t = transmittance(g, arrays, origin, wi, reach)
             result = t * result + (1.0 - t) * light.shadow_color
         return result
+
+    from_cone = make_cone_lights(key, models, arrives)
 
     @wp.func
     def on_base(responses: ResponseArrays, lobe: Lobe, light: Light, ls: LightSample, ng: wp.vec3) -> wp.vec3:
@@ -133,7 +139,7 @@ def make_direct(key: KernelKey, transmittance):
             span = span_cap(toward, PSI, lobe.frame.x, lobe.frame.y, lobe.frame.n, lobe.sin_theta)
         else:
             for j in range(wp.static(len(models))):
-                if wp.static(finite[j]):
+                if wp.static(finite[j] or sought[j]):
                     if kind == j:
                         span = wp.static(models[j].span)(
                             lights.arrays, light, p, lobe.frame.x, lobe.frame.y, lobe.frame.n, lobe.sin_theta
@@ -172,8 +178,15 @@ def make_direct(key: KernelKey, transmittance):
                                 if wp.static(key.shadows):
                                     rays += float(light.shadow)
                     if wp.static(key.scratches):
-                        if lobe.scratch == 1:
-                            if wp.static(finite[j]):
+                        closed = int(0)
+                        if wp.static(integrated[j]):
+                            if lobe.scratch == 1 and light.delta == 0:
+                                closed = 1
+                                received = wp.static(from_cone[j])(g, arrays, tables, lights, light, p, ng, lobe, u)
+                                total += wp.vec3(received[0], received[1], received[2])
+                                rays += received[3]
+                        if lobe.scratch == 1 and closed == 0:
+                            if light.delta == 1 or wp.static(sought[j]):
                                 toward = wp.vec3(0.0, 0.0, 1.0)
                                 e = wp.vec3(0.0, 0.0, 0.0)
                                 far = float(0.0)
@@ -205,9 +218,12 @@ def make_direct(key: KernelKey, transmittance):
                                         far = hit.distance
                                         weight = float(0.0)
                                         if hit.distance >= 0.0:
-                                            weight = power_heuristic(
-                                                1.0 / (span.hi - span.lo), table_pdf(tables, lobe.table, lobe.row, phi)
-                                            )
+                                            weight = 1.0
+                                            if wp.static(key.sample_cones):
+                                                weight = power_heuristic(
+                                                    1.0 / (span.hi - span.lo),
+                                                    table_pdf(tables, lobe.table, lobe.row, phi),
+                                                )
                                         value = wp.cw_mul(value, hit.radiance) * weight
                                     if wp.static(key.light_multipliers):
                                         value = value * light.specular
@@ -245,6 +261,10 @@ def make_direct(key: KernelKey, transmittance):
                     wanted = linked(lights, light, instance)
                     if depth == 0 and light.camera_visible == 0:
                         wanted = False
+                    if wp.static(key.scratches and (integrated[j] or not key.sample_cones)):
+                        # the scratch has counted this light already
+                        if lobe.scratch == 1 and pdf > 0.0:
+                            wanted = False
                     if wanted:
                         hit = wp.static(models[j].hit)(lights.arrays, light, p, w)
                         if hit.distance >= gone and hit.distance < reach:
@@ -254,7 +274,7 @@ def make_direct(key: KernelKey, transmittance):
                                 if wp.static(key.scratches):
                                     if lobe.scratch == 1:
                                         other = 0.0
-                                        if wp.static(finite[j]):
+                                        if wp.static(sought[j]):
                                             span = cone_span(lights, j, light, p, lobe, w)
                                             if span.ok == 1 and span.hi > span.lo:
                                                 if phi >= span.lo and phi <= span.hi:

@@ -23,6 +23,8 @@ class KernelKey:
         responses: kinds of response over solid angle, of scratches or bases.
         glints: some scratches diffract. glint_segments: explicit ones; glint_bands: kinds of regular patterns.
         glint_areas: under lights with an extent. glint_method: slices, closed-form or paper.
+        closed_form: light along the cones of scratches is integrated; cone_taps: some of those lights are not even.
+        sample_lights, sample_cones: scratches look for the other lights by drawing from these, from their own cone.
     """
 
     lights: tuple[str, ...] = ()
@@ -52,6 +54,10 @@ class KernelKey:
     glint_bands: tuple[str, ...] = ()
     glint_areas: bool = False
     glint_method: str = "slices"
+    closed_form: bool = False
+    cone_taps: bool = False
+    sample_lights: bool = False
+    sample_cones: bool = False
 
     @property
     def scratches(self) -> bool:

@@ -21,6 +21,8 @@ class LightSet:
     starts: wp.array(dtype=int)
     links: wp.array2d(dtype=wp.uint8)  # [light, instance]: 1 where the light lights the instance
     arrays: LightArrays
+    taps: int  # look-ups along a cone into a light that is not even
+    tap_width: float  # share of their distance over which an image is averaged
 
 
 @wp.struct

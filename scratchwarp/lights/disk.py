@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 
 from scratchwarp.lights import disk_device as device
+from scratchwarp.lights.arcs_device import arcs_disk
+from scratchwarp.lights.lit_device import lit_disk
 from scratchwarp.lights.model import LightModel, Packer, reciprocal, unit
 from scratchwarp.scene.light import DiskLight
 
@@ -26,4 +28,6 @@ def _pack(light: DiskLight, packer: Packer) -> Mapping[str, Any]:
     }
 
 
-DISK = LightModel("disk", DiskLight, _pack, device.sample_disk, device.hit_disk, device.span_disk)
+DISK = LightModel(
+    "disk", DiskLight, _pack, device.sample_disk, device.hit_disk, device.span_disk, arcs=arcs_disk, lit=lit_disk
+)

@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 
 from scratchwarp.lights import distant_device as device
+from scratchwarp.lights.arcs_device import arcs_distant
+from scratchwarp.lights.lit_device import lit_distant
 from scratchwarp.lights.model import LightModel, Packer, unit
 from scratchwarp.scene.light import DistantLight
 
@@ -21,4 +23,13 @@ def _pack(light: DistantLight, packer: Packer) -> Mapping[str, Any]:
     }
 
 
-DISTANT = LightModel("distant", DistantLight, _pack, device.sample_distant, device.hit_distant, device.span_distant)
+DISTANT = LightModel(
+    "distant",
+    DistantLight,
+    _pack,
+    device.sample_distant,
+    device.hit_distant,
+    device.span_distant,
+    arcs=arcs_distant,
+    lit=lit_distant,
+)

@@ -6,6 +6,9 @@ from typing import Any
 import numpy as np
 
 from scratchwarp.lights import dome_device as device
+from scratchwarp.lights.arcs_device import arcs_dome
+from scratchwarp.lights.levels import levels
+from scratchwarp.lights.lit_device import lit_dome
 from scratchwarp.lights.model import LightModel, Packer
 from scratchwarp.scene.light import DomeLight
 
@@ -46,7 +49,13 @@ def _pack(light: DomeLight, packer: Packer) -> Mapping[str, Any]:
     if cdf is not None:
         rows, columns = packer.images[texture].shape[:2]
         fields.update(rows=rows, columns=columns, cdf=packer.put_cdf(cdf))
+    if texture >= 0 and packer.filtered:
+        copies = levels(packer.images[texture])
+        fields.update(first_level=len(packer.images), levels=len(copies))
+        packer.images.extend(copies)
     return {**fields, "texture": texture, "camera_visible": int(light.camera_visible)}
 
 
-DOME = LightModel("dome", DomeLight, _pack, device.sample_dome, device.hit_dome, device.span_dome)
+DOME = LightModel(
+    "dome", DomeLight, _pack, device.sample_dome, device.hit_dome, device.span_dome, arcs=arcs_dome, lit=lit_dome
+)

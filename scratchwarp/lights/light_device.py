@@ -32,6 +32,7 @@ class Light:
         delta: 1 for lights without extent (``radiance`` is irradiance or intensity).
         radiance: linear Rec.709.
         texture: image in the atlas, -1 none. rows, columns: cells of a dome's distribution.
+        first_level, levels: a dome's smaller copies of its image in the atlas, each half the size of the one before.
         shaped: 1 when focus, focus_tint, cone_angle, cone_start [rad] apply.
         first, count: triangles of a mesh light; first: start of its or the dome's distribution is ``cdf``.
         diffuse, specular, shadow, shadow_color, shadow_distance: as in the record.
@@ -54,6 +55,8 @@ class Light:
     texture: int
     rows: int
     columns: int
+    first_level: int
+    levels: int
     shaped: int
     focus: float
     focus_tint: wp.vec3

@@ -13,7 +13,8 @@ from scratchwarp.scene.texture import Texture
 
 @dataclass
 class Packer:
-    """Collects what lights share while they are packed: textures in use, distributions, triangles."""
+    """Collects what lights share while they are packed: textures in use, distributions, triangles. ``filtered``: with
+    smaller copies of the images of domes."""
 
     textures: Sequence[Texture] = ()
     instances: Sequence[Instance] = ()
@@ -22,6 +23,7 @@ class Packer:
     cdf: list[np.ndarray] = field(default_factory=list)
     triangles: list[np.ndarray] = field(default_factory=list)
     _slots: dict[int, int] = field(default_factory=dict)
+    filtered: bool = False
 
     def image(self, texture: int) -> int:
         """Index in the lights' atlas of scene texture ``texture``, which is added on first use; -1 stays -1."""
@@ -54,6 +56,8 @@ class LightModel:
         pack: (record, packer) -> fields of ``light_device.Light`` beyond those all lights share.
         sample, hit, span: its device functions, see ``light_device``.
         geometry: True when the light is scene geometry: rays meet its triangles, ``hit`` always misses.
+        arcs, lit: device functions for integrals along a scratch cone, see ``arcs_device`` and ``lit_device``; None:
+            only ``span`` is known, which may hold more than the light.
     """
 
     name: str
@@ -63,6 +67,8 @@ class LightModel:
     hit: Any
     span: Any
     geometry: bool = False
+    arcs: Any = None
+    lit: Any = None
 
 
 def unit(vector: np.ndarray, otherwise: tuple[float, float, float] = (0.0, 0.0, -1.0)) -> np.ndarray:

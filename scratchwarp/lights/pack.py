@@ -84,13 +84,14 @@ def pack_lights(
     instances: Sequence[Instance] = (),
     meshes: Sequence[Mesh] = (),
     device: str = "cpu",
+    filtered: bool = False,
 ) -> PackedLights:
-    """Put light records on ``device``.
+    """Put light records on ``device``; ``filtered``: images of domes with smaller copies, for ``lit_device``.
 
     ``textures``, ``instances``, ``meshes``: what the records' indices refer to. Raises ValueError on a record of an
     unknown class or an index that refers to nothing.
     """
-    packer = Packer(textures, instances, meshes)
+    packer = Packer(textures, instances, meshes, filtered=filtered)
     models: dict[str, LightModel] = {}
     rows: dict[str, list[dict[str, Any]]] = {}
     slots = np.zeros(len(lights), np.int32)
@@ -120,6 +121,6 @@ def pack_lights(
     return PackedLights(tuple(models), tuple(models.values()), on_device, slots, arrays, tuple(warnings))
 
 
-def pack(scene: Scene, device: str = "cpu") -> PackedLights:
+def pack(scene: Scene, device: str = "cpu", filtered: bool = False) -> PackedLights:
     """Put all lights of a scene on ``device``; see ``pack_lights``."""
-    return pack_lights(scene.lights, scene.textures, scene.instances, scene.meshes, device)
+    return pack_lights(scene.lights, scene.textures, scene.instances, scene.meshes, device, filtered)

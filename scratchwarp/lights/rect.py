@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 
 from scratchwarp.lights import rect_device as device
+from scratchwarp.lights.arcs_device import arcs_rect
+from scratchwarp.lights.lit_device import lit_rect
 from scratchwarp.lights.model import LightModel, Packer, reciprocal, unit
 from scratchwarp.scene.light import RectLight
 
@@ -28,4 +30,6 @@ def _pack(light: RectLight, packer: Packer) -> Mapping[str, Any]:
     }
 
 
-RECT = LightModel("rect", RectLight, _pack, device.sample_rect, device.hit_rect, device.span_rect)
+RECT = LightModel(
+    "rect", RectLight, _pack, device.sample_rect, device.hit_rect, device.span_rect, arcs=arcs_rect, lit=lit_rect
+)

@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 
 from scratchwarp.lights import sphere_device as device
+from scratchwarp.lights.arcs_device import arcs_sphere
+from scratchwarp.lights.lit_device import lit_sphere
 from scratchwarp.lights.model import LightModel, Packer, unit
 from scratchwarp.scene.light import SphereLight
 
@@ -20,4 +22,13 @@ def _pack(light: SphereLight, packer: Packer) -> Mapping[str, Any]:
     }
 
 
-SPHERE = LightModel("sphere", SphereLight, _pack, device.sample_sphere, device.hit_sphere, device.span_sphere)
+SPHERE = LightModel(
+    "sphere",
+    SphereLight,
+    _pack,
+    device.sample_sphere,
+    device.hit_sphere,
+    device.span_sphere,
+    arcs=arcs_sphere,
+    lit=lit_sphere,
+)

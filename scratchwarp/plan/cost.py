@@ -22,6 +22,7 @@ OTHER = {
     "base.measured": 60,
     "base.preview": 80,
     "lens": 20,
+    "lights.closedForm": 300,
 }
 
 

@@ -11,7 +11,8 @@ import numpy as np
 
 from ..lights.registry import MODELS
 from ..reflectance.responses import RESPONSES
-from ..scene import Material, PreviewSurface, Scene, ScratchSurface, Settings, TextureInput
+from ..scene import DistantLight, Material, PreviewSurface, Scene, ScratchSurface, Settings, SphereLight, TextureInput
+from ..scene.light import Light
 from ..scratches import KINDS
 from .choice import LayerPlan, ResponsePlan, TablePlan
 from .occlusion import can_occlude
@@ -163,6 +164,38 @@ def _multipliers(f: Facts) -> Answer:
     return _answer(found, "diffuse or specular multipliers other than 1", "all multipliers are 1")
 
 
+def integrated_lights(f: Facts) -> list[str]:
+    """Lights with extent whose light along a scratch's cone has a closed form."""
+    return [light.path for light in f.scene.lights if MODELS[type(light)].arcs is not None and not _small(light)]
+
+
+def sampled_lights(f: Facts) -> list[str]:
+    """Lights with extent that scratches sample; none where no scratch reflects by a table."""
+    if not f.tables:
+        return []
+    closed = set(integrated_lights(f)) if f.settings.effects.get("lights.closedForm", True) else set()
+    return [light.path for light in f.scene.lights if light.path not in closed and not _small(light)]
+
+
+def _small(light: Light) -> bool:
+    return (isinstance(light, SphereLight) and (light.point or light.radius == 0.0)) or (
+        isinstance(light, DistantLight) and light.angle < 2e-6
+    )
+
+
+def _closed_form(f: Facts) -> Answer:
+    found = integrated_lights(f) if f.tables else []
+    return _answer(found, "integrated along the mirror cones of scratches", "no scratch reflects a light with extent")
+
+
+def _sample_lights(f: Facts) -> Answer:
+    return _answer(sampled_lights(f), "scratches draw from these lights, too", "no light left to draw from")
+
+
+def _sample_cones(f: Facts) -> Answer:
+    return _answer(sampled_lights(f), "scratches find these lights along their cones, too", "no light left to find so")
+
+
 def _indirect(f: Facts) -> Answer:
     on = f.settings.integrator == "path"
     return on, "integrator path" if on else "integrator direct", ()
@@ -215,6 +248,9 @@ EFFECTS: dict[str, Callable[[Facts], Answer]] = {
         "no surface glows",
     ),
     **{f"lights.{model.name}": _light(model.name, record) for record, model in MODELS.items()},
+    "lights.closedForm": _closed_form,
+    "lights.sampleLights": _sample_lights,
+    "lights.sampleCones": _sample_cones,
     "lights.links": _links,
     "lights.multipliers": _multipliers,
     "shadows": _shadows,

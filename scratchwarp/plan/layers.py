@@ -95,9 +95,10 @@ def _sized(scene: Scene, layer: Layer, curves: int) -> Layer:
 class _Tables:
     """Tables asked for so far, each once: layers of one profile, aspect and reflectance share one."""
 
-    def __init__(self, scene: Scene, max_error: float | None, known: tuple[TablePlan, ...]) -> None:
-        self._scene, self._max_error = scene, max_error
-        self._chosen = {t.key: (t.theta_model, t.error) for t in known}
+    def __init__(self, scene: Scene, max_error: float | None, known: tuple[TablePlan, ...], summed: bool) -> None:
+        self._scene, self._max_error, self._summed = scene, max_error, summed
+        fits = [t for t in known if t.fresnel is None or not summed or t.theta_model != "gamma"]
+        self._chosen = {t.key: (t.theta_model, t.error) for t in fits}
         self._plans: dict[tuple[Any, ...], TablePlan] = {}
 
     def index(self, layer: Layer, curves: int, fresnel: Any) -> int:
@@ -112,7 +113,7 @@ class _Tables:
         if known is None:
             profile = cross_section(p, sized)
             reflecting = None if isinstance(fresnel, optics.Mirror) else fresnel
-            model, off = self._chosen.get(key) or theta_model(profile, reflecting, self._max_error)
+            model, off = self._chosen.get(key) or theta_model(profile, reflecting, self._max_error, self._summed)
             flat = p.rim == 0.0 and (p.shape == "flat" or aspect == 0.0)
             known = TablePlan(key, profile, reflecting, 1 if flat else 2000, (), theta_model=model, error=off)
             known = models.changed(known, layer.model)
@@ -140,7 +141,7 @@ class _Tables:
             if known is None:
                 middle = parts[len(parts) // 2][0]
                 model, off = self._chosen.get(key) or max(
-                    (theta_model(p, reflecting, self._max_error) for p in {parts[0][0], parts[-1][0]}),
+                    (theta_model(p, reflecting, self._max_error, self._summed) for p in {parts[0][0], parts[-1][0]}),
                     key=lambda chosen: RENDERED.index(chosen[0]),
                 )
                 known = TablePlan(key, middle, reflecting, 2000, (), theta_model=model, error=off, parts=parts)
@@ -182,14 +183,16 @@ def plan_layers(
     known: tuple[TablePlan, ...] = (),
     model: str | None = None,
     elsewhere: Callable[[Material, Layer], bool] = lambda material, layer: False,
+    summed: bool = False,
 ) -> tuple[tuple[tuple[LayerPlan, ...], ...], tuple[TablePlan, ...], tuple[ResponsePlan, ...], tuple[str, ...]]:
     """(sublayers of each material, tables to simulate, responses over solid angle, warnings).
 
     ``allowed(distribution)``: whether it may be on; ``max_error``: of a table's albedos, None for the default;
     ``known``: tables planned earlier for the same ``max_error``; ``model``: in place of every layer's own;
-    ``elsewhere``: whether a layer is rendered by other means than sublayers.
+    ``elsewhere``: whether a layer is rendered by other means than sublayers; ``summed``: of theta
+    models with sums along a cone.
     """
-    tables = _Tables(scene, max_error, known)
+    tables = _Tables(scene, max_error, known, summed)
     responses = models.Responses()
     warnings: dict[str, None] = {}
     every: list[tuple[LayerPlan, ...]] = []

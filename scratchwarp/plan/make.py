@@ -8,7 +8,7 @@ from ..reflectance.responses import RESPONSES
 from ..scene import Layer, Material, Scene, Settings
 from .choice import EffectChoice, EffectPlan, LayerPlan, ResponsePlan, TablePlan
 from .cost import shares
-from .effects import EFFECTS, Facts
+from .effects import EFFECTS, Facts, sampled_lights
 from .layers import plan_layers, reflector
 from .models import base_responses
 from .resolve import resolve
@@ -37,10 +37,12 @@ def make_plan(scene: Scene, settings: Settings | None = None, earlier: EffectPla
     def waved(material: Material, layer: Layer) -> bool:
         return forced.get("diffraction", True) and diffracts(material, layer)
 
+    # closed forms along cones need tables whose sums follow from those of their slices
+    summed = forced.get("lights.closedForm", any(MODELS[type(light)].arcs is not None for light in scene.lights))
     try:
         known = earlier.tables if earlier is not None and earlier.settings.max_error == decided.max_error else ()
         layers, tables, responses, warnings = plan_layers(
-            scene, allowed, decided.max_error, known, decided.model, waved
+            scene, allowed, decided.max_error, known, decided.model, waved, summed
         )
         waves = plan_waves(scene, waved, reflector, decided.model)
         used = sorted({m for instance in scene.instances for m in instance.materials})
@@ -55,6 +57,12 @@ def make_plan(scene: Scene, settings: Settings | None = None, earlier: EffectPla
             reason = f"forced {'on' if forced[name] else 'off'}; by itself {'on' if enabled else 'off'}: {reason}"
             enabled = forced[name]
         effects[name] = EffectChoice(enabled, reason, prims, name in forced)
+    unseen = sampled_lights(facts)
+    if unseen and not effects["lights.sampleLights"].enabled and not effects["lights.sampleCones"].enabled:
+        raise ValueError(
+            f"effects: lights.sampleLights and lights.sampleCones are both off, but scratches find {', '.join(unseen)} "
+            "only so; leave one of them on"
+        )
     counts = {f"lights.{m.name}": sum(type(x) is r for x in scene.lights) for r, m in MODELS.items()}
     layers, tables = _without(effects, layers, tables, responses)
     by_cost = shares(effects, layers, counts, decided.max_depth or 1)

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from ..scene import Scene, Settings
 
-DEFAULT_WIDTH, DEFAULT_SPP, DEFAULT_DEPTH = 640, 16, 8
+DEFAULT_WIDTH, DEFAULT_SPP, DEFAULT_DEPTH, DEFAULT_TAPS = 640, 16, 8, 16
 # Full support in pixels at which each filter is sharp without aliasing.
 FILTER_WIDTHS = {"box": 1.0, "gaussian": 3.0, "blackmanHarris": 3.3}
 QUALITY_SPP = {"draft": 4, "preview": 16, "final": 128, "reference": 1024}
@@ -62,6 +62,7 @@ def resolve(scene: Scene, settings: Settings) -> tuple[Settings, tuple[int, int]
         max_depth=settings.max_depth or o.max_depth or DEFAULT_DEPTH,
         filter=chosen,
         filter_width=filter_width,
+        cone_taps=settings.cone_taps or DEFAULT_TAPS,
         effects={**dict(o.effects), **settings.effects},
     )
     return decided, (width, height), (x0, x1, y0, y1)

@@ -10,6 +10,8 @@ from ..profiles.theta import theta_model
 from .profile_table_device import TableArrays
 
 RENDERED = ("gamma", "quadratic", "table")  # theta models that the device reads, from the cheapest
+SUMMED = RENDERED[1:]  # those whose integrals along a cone follow from sums of their rows
+_LUMINANCE = (0.2126, 0.7152, 0.0722)
 
 
 def rows_to_unit_energy(mirror: np.ndarray, weights: np.ndarray, lost: np.ndarray | float = 0.0) -> np.ndarray:
@@ -71,14 +73,30 @@ def _packed(table: Any) -> _Packed:
     return _Packed(unit.astype(np.float32), cdf, made.astype(np.float32), steps, shift)
 
 
+def _sums(table: Any, one: _Packed) -> np.ndarray:
+    """Running sums [phi_o, n, M + 1, 4] of rows [phi_o, n, phi_i, 3] times bin weights; see ``TableArrays``."""
+    if one.rows is not None and one.steps == 0:
+        raise ValueError(f"theta_model {table.theta_model!r} has no sums along a cone; choose one of {SUMMED}")
+    rows = np.repeat(one.mirror[:, None, :, None], 3, axis=-1) if one.rows is None else one.rows
+    result = np.zeros((rows.shape[0], rows.shape[1], rows.shape[2] + 1, 4))
+    np.cumsum(rows * np.asarray(table.weights)[:, None], axis=2, dtype=np.float64, out=result[:, :, 1:, :3])
+    result[..., 3] = result[..., :3] @ np.array(_LUMINANCE)
+    return result.astype(np.float32)
+
+
 def pack(
-    tables: Sequence[Any], device: str = "cpu", earlier: tuple[Sequence[Any], TableArrays] | None = None
+    tables: Sequence[Any],
+    device: str = "cpu",
+    earlier: tuple[Sequence[Any], TableArrays] | None = None,
+    summed: bool = False,
 ) -> TableArrays:
     """Device arrays of ``profiles`` tables, all of one resolution, each of a theta model in ``RENDERED``.
 
-    ``earlier``: tables packed before and their arrays, which are written over where only some tables are others.
+    Args:
+        earlier: tables packed before, likewise, and their arrays, which are written over where only some are others.
+        summed: with the sums that integrals along a cone need; ValueError on a table that varies by "gamma" then.
     """
-    if earlier is not None and wp.get_device(device).is_cpu and _replaced(tables, *earlier):
+    if earlier is not None and wp.get_device(device).is_cpu and _replaced(tables, *earlier, summed):
         return earlier[1]
     packed = TableArrays()
     bins = len(tables[0].weights) if tables else 1
@@ -88,12 +106,17 @@ def pack(
     cdf = np.zeros((count, bins, bins + 1), np.float32)
     first, steps, shift = np.full(count, -1, np.int32), np.zeros(count, np.int32), np.zeros(count, np.float32)
     rows: list[np.ndarray] = []
+    running: list[np.ndarray] = []
+    first_sum = np.zeros(count, np.int32)
     for k, table in enumerate(tables):
         one = _packed(table)
         mirror[k], cdf[k] = one.mirror, one.cdf
         if one.rows is not None:
             first[k], steps[k], shift[k] = sum(r.shape[1] for r in rows), one.steps, one.shift
             rows.append(one.rows)
+        if summed:
+            first_sum[k] = sum(r.shape[1] for r in running)
+            running.append(_sums(table, one))
     every = np.concatenate(rows, axis=1) if rows else np.zeros((1, 1, 1, 3), np.float32)
     packed.slices = wp.array(every, dtype=wp.vec3, device=device)
     packed.mirror = wp.array(mirror, dtype=float, device=device)
@@ -101,15 +124,18 @@ def pack(
     packed.first = wp.array(first, dtype=int, device=device)
     packed.steps = wp.array(steps, dtype=int, device=device)
     packed.shift = wp.array(shift, dtype=float, device=device)
+    every = np.concatenate(running, axis=1) if running else np.zeros((1, 1, 1, 4), np.float32)
+    packed.sums = wp.array(every, dtype=wp.vec4, device=device)
+    packed.first_sum = wp.array(first_sum, dtype=int, device=device)
     return packed
 
 
-def _replaced(tables: Sequence[Any], old: Sequence[Any], packed: TableArrays) -> bool:
+def _replaced(tables: Sequence[Any], old: Sequence[Any], packed: TableArrays, summed: bool) -> bool:
     """Put other tables in the place of ``old`` ones; False, with nothing done, where they do not fit."""
     if len(tables) != len(old) or not tables or any(len(t.weights) != packed.bins for t in tables):
         return False
     others = {k: _packed(t) for k, t in enumerate(tables) if t is not old[k]}
-    first, steps = packed.first.numpy(), packed.steps.numpy()
+    first, steps, first_sum = packed.first.numpy(), packed.steps.numpy(), packed.first_sum.numpy()
     if any((one.rows is None) != (first[k] < 0) or one.steps != steps[k] for k, one in others.items()):
         return False
     mirror, cdf, slices, shift = (a.numpy() for a in (packed.mirror, packed.cdf, packed.slices, packed.shift))
@@ -117,4 +143,7 @@ def _replaced(tables: Sequence[Any], old: Sequence[Any], packed: TableArrays) ->
         mirror[k], cdf[k], shift[k] = one.mirror, one.cdf, one.shift
         if one.rows is not None:
             slices[:, first[k] : first[k] + one.rows.shape[1]] = one.rows
+        if summed:
+            made = _sums(tables[k], one)
+            packed.sums.numpy()[:, first_sum[k] : first_sum[k] + made.shape[1]] = made
     return True

@@ -24,6 +24,8 @@ class TableArrays:
     steps: wp.array(dtype=int)  # table -> steps from there to theta = 0; 0: Eq. 2, rows mirror, theta = 0, gamma
     shift: wp.array(dtype=float)  # table -> s of its steps
     cdf: wp.array3d(dtype=float)  # [table, phi_o, M + 1]
+    sums: wp.array3d(dtype=wp.vec4)  # [phi_o, as slices, M + 1]: int rho cos from -pi/2, its luminance; may be empty
+    first_sum: wp.array(dtype=int)  # table -> its first row in ``sums``
 
 
 @wp.struct

@@ -195,6 +195,7 @@ def render_digest(scene: Scene, plan: EffectPlan, built: Assembled) -> str:
         built.key,
         settings.filter_width,
         settings.max_depth,
+        settings.cone_taps,
     )
 
 

@@ -232,6 +232,6 @@ class Session:
 def _described(scene: Scene, plan: EffectPlan, built: Assembled) -> str:
     """A hash of what the image depends on besides the parts of ``assemble``."""
     s = plan.settings
-    decided = (s.spp, s.seed, s.filter_width, s.max_depth, s.integrator, s.max_error, plan.size, plan.window)
+    decided = (s.spp, s.seed, s.filter_width, s.max_depth, s.integrator, s.max_error, s.cone_taps)
     on = tuple(name for name, choice in plan.effects.items() if choice.enabled)
-    return digest(built.key, scene.camera, scene.origin, scene.options, decided, on)
+    return digest(built.key, scene.camera, scene.origin, scene.options, decided, plan.size, plan.window, on)

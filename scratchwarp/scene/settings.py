@@ -9,6 +9,7 @@ from .checks import in_range, one_of, put
 from .layer import MODELS
 
 QUALITIES = ("draft", "preview", "final", "reference")
+MOST_CONE_TAPS = 64
 INTEGRATORS = ("direct", "path")
 
 
@@ -27,6 +28,7 @@ class Settings:
         crop: (xmin, xmax, ymin, ymax) in [0, 1], from the top left; only that part is rendered.
         tile: edge of a square tile in pixels.
         filter: box, gaussian or blackmanHarris [blackmanHarris]; filter_width: full width in pixels.
+        cone_taps: look-ups into an image or a shaped light along the mirror cone of a scratch, for each sample [16].
         effects: name -> True or False forces one effect of the plan on or off.
         model: how light on scratches is computed, a token of ``scratch:layer:model`` in place of every layer's own.
     """
@@ -46,9 +48,11 @@ class Settings:
     filter_width: float | None = None
     effects: Mapping[str, bool] = field(default_factory=dict)
     model: str | None = None
+    cone_taps: int | None = None
 
     def __post_init__(self) -> None:
         limits = {"width": 65536, "height": 65536, "spp": 1 << 20, "threads": 4096, "max_depth": 1024, "tile": 4096}
+        limits["cone_taps"] = MOST_CONE_TAPS
         for name, high in limits.items():
             value = getattr(self, name)
             if value is not None:

@@ -29,7 +29,7 @@ EVERYTHING = {
     for name in EFFECTS
     if name.split(".")[0] in ("lights", "base", "scratches", "shadows", "lens", "indirect")
     and name not in ("lights.multipliers", "scratches.curves", "scratches.sumCoverage", *RESPONDING)
-}
+} | {"lights.closedForm": False}
 
 
 def shoot(world, effects=None, **settings):

@@ -121,7 +121,7 @@ def expected(table, hit):
     return found.sum() * np.pi / n * RADIANCE, (hit(w) * np.cos(phi)).sum() / np.cos(phi).sum()
 
 
-def shoot(light, shape, quad=None, blocker=None):
+def shoot(light, shape, quad=None, blocker=None, effects=None, spp=1024, **fields):
     """(film of a fully scratched plane seen from (THETA, PHI), its table). ``quad``: the mesh that shines."""
     omega = np.array([np.sin(THETA), np.cos(THETA) * np.sin(PHI), np.cos(THETA) * np.cos(PHI)])
     right = np.cross((0.0, 1, 0), omega) / np.linalg.norm(np.cross((0.0, 1, 0), omega))
@@ -140,8 +140,9 @@ def shoot(light, shape, quad=None, blocker=None):
     if blocker is not None:
         meshes.append(blocker)
         placed.append(Instance("/blocker", len(meshes) - 1, np.eye(4), (1,)))
-    world = scenes.scene(meshes, materials, [light], placed, cam)
-    plan = sw.make_plan(world, sw.Settings(width=8, height=8, spp=1024, filter="box", effects=scenes.EVERYTHING))
+    world = scenes.scene(meshes, materials, [light], placed, cam, **fields)
+    effects = scenes.EVERYTHING if effects is None else effects
+    plan = sw.make_plan(world, sw.Settings(width=8, height=8, spp=spp, filter="box", effects=effects))
     film = sw.render(world, plan)
     assert film.stats["invalid_samples"] == 0 and (film["primId"] == 0).all()
     return film, plan.tables[0]

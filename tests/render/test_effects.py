@@ -119,7 +119,8 @@ def test_code_that_nothing_calls_for_changes_no_bit(material):
     if material == "scratched":
         layered = scenes.scratched(ROUGH, width=30000.0, depth=9000.0, length=3e5, fresnel="exact")
         world = replace(world, materials=(layered,))
-    lean, full = scenes.shoot(world, {}), scenes.shoot(world)
+    # integrals along cones are estimated otherwise where something may cast a shadow
+    lean, full = scenes.shoot(world, {"lights.closedForm": False}), scenes.shoot(world)
     assert (lean["scratches"].max() > 0.05) == (material == "scratched") and lean["base"].max() > 0.1
     for name in lean:
         np.testing.assert_array_equal(full[name], lean[name], err_msg=name)
