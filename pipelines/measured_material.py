@@ -72,7 +72,7 @@ def _attributes(model: "Model") -> dict[str, Any]:
     modes = model.modes
     found: dict[str, Any] = {
         "source": "stencils",
-        "beta": _single(model.beta),
+        "beta": float(np.mean(model.beta)) if len(model.beta) else 0.0,
         "background": Gf.Vec3f(model.background),
         "k": model.k,
         "specularAlpha": model.specular_alpha,
@@ -83,16 +83,13 @@ def _attributes(model: "Model") -> dict[str, Any]:
         f"modes:{key}": Vt.FloatArray([getattr(m, key) for m in modes])
         for key in ("width", "a", "b", "kd", "ks", "alpha")
     }
+    if len(set(model.beta)) > 1:
+        found["modes:beta"] = Vt.FloatArray(list(model.beta))
     if model.retro:
         found["retro"] = True
     if model.mask != "smooth":
         found["mask"] = model.mask
     return found
-
-
-def _single(betas: Sequence[float]) -> float:
-    """One translucency for all crossings: their mean, as the schema has it."""
-    return float(np.mean(betas)) if len(betas) else 0.0
 
 
 def likeness(model: "Model") -> dict[str, Any]:

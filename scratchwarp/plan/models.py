@@ -121,7 +121,7 @@ def measured_base(record: Measured) -> tuple[str, Any, tuple[float, float, float
     )
     model = stencils.Model(
         tuple(stencils.Mode(*map(float, numbers), color) for *numbers, color in columns),
-        beta=record.beta,
+        beta=tuple(record.betas) if len(record.betas) else record.beta,
         background=record.background,
         k=record.k,
         specular_alpha=record.specular_alpha,

@@ -79,7 +79,7 @@ class Measured:
         azimuth [n] (radians, counter-clockwise from the tangent), width, a, b, kd, ks, alpha [n], color [n, 3]: of each
             mode, the dominant one first.
         beta, background, k, specular_alpha: of the whole model. retro: highlights return the light.
-        mask: smooth or binary.
+        mask: smooth or binary. betas [n - 1]: of each crossing, in place of beta; empty: beta everywhere.
     """
 
     source: str = "stencils"
@@ -99,6 +99,7 @@ class Measured:
     specular_alpha: float = 1.0
     retro: bool = False
     mask: str = "smooth"
+    betas: np.ndarray = constant(())
 
     def __post_init__(self) -> None:
         owner = "ScratchMeasuredAPI"
@@ -108,6 +109,8 @@ class Measured:
         modes = len(self.azimuth)
         for name in ("azimuth", "width", "a", "b", "kd", "ks", "alpha"):
             put(self, **{name: freeze(owner, f"modes:{name}", getattr(self, name), (modes,))})
+        if len(self.betas):
+            put(self, betas=freeze(owner, "modes:beta", self.betas, (max(modes - 1, 0),)))
         put(self, color=freeze(owner, "modes:color", np.reshape(self.color, (-1, 3)), (modes, 3)))
 
 

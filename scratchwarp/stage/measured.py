@@ -47,6 +47,7 @@ def read_measured(reading: Reading, prim: Usd.Prim) -> Measured | None:
             azimuth=azimuth,
             color=color(reading, colors, authored_colors),
             beta=float(get("beta")),
+            betas=np.asarray(get("modes:beta"), np.float64),
             background=float(background.mean()),
             k=float(get("k")),
             specular_alpha=float(get("specularAlpha")),

@@ -101,6 +101,11 @@ def check_measured(prim: Usd.Prim) -> Iterator[Problem]:
     names = [f"scratch:measured:modes:{name}" for name in ("azimuth", "width", "a", "b", "kd", "ks", "alpha", "color")]
     arrays = [np.asarray(value(prim.GetAttribute(name)), dtype=float) for name in names]
     yield from check_lengths(prim, names, arrays)
+    betas = value(prim.GetAttribute("scratch:measured:modes:beta")) or ()
+    if len(betas) not in (0, max(len(arrays[0]) - 1, 0)):
+        path = prim.GetPath().AppendProperty("scratch:measured:modes:beta")
+        wanted = max(len(arrays[0]) - 1, 0)
+        yield Problem(path, f"scratch:measured:modes:beta has {len(betas)} entries; {wanted} crossings need {wanted}")
     if source == "file" and not value(prim.GetAttribute("scratch:measured:file")):
         path = prim.GetPath().AppendProperty("scratch:measured:file")
         yield Problem(path, "scratch:measured:source is 'file' but scratch:measured:file is empty; author the file")

@@ -30,7 +30,9 @@ def _read(path):
     names = ("width", "a", "b", "kd", "ks", "alpha")
     rows = zip(get("modes:azimuth"), get("modes:color"), *(get(f"modes:{n}") for n in names), strict=True)
     modes = tuple(Mode(np.radians(row[0]), *row[2:], tuple(row[1])) for row in rows)
-    return Model(modes, get("beta"), get("background")[0], get("k"), get("specularAlpha"))
+    beta = tuple(get("modes:beta")) or get("beta")
+    numbers = get("background")[0], get("k"), get("specularAlpha")
+    return Model(modes, beta, *numbers, retro=get("retro"), mask=get("mask"))
 
 
 def test_every_number_comes_back(tmp_path):
@@ -41,6 +43,17 @@ def test_every_number_comes_back(tmp_path):
     assert prim.GetName() == "two_tone_cloth" and prim.HasAPI("ScratchMeasuredAPI")
     # degrees and float32
     np.testing.assert_allclose(stencils.unfolded(_read(path)), stencils.unfolded(TWO), rtol=1e-4, atol=1e-6)
+
+
+def test_what_only_some_models_have(tmp_path):
+    """A translucency for each crossing, retro-reflection, binary masks."""
+    third = Mode(2.5, 0.6, 1.0, 0.0, 0.01, 0.2, 12.0, (0.1, 0.9, 0.2))
+    model = replace(TWO, modes=(*TWO.modes, third), beta=(0.1, 0.7), retro=True, mask="binary")
+    path = pipeline.author(model, tmp_path / "a.usda")
+    assert [str(finding) for finding in validate(path)] == []
+    found = _read(path)
+    assert found.retro and found.mask == "binary"
+    np.testing.assert_allclose(found.beta, (0.1, 0.7), rtol=1e-6)
 
 
 def test_editing_the_layer_is_editing_the_model(tmp_path):

@@ -20,6 +20,7 @@ ATTRIBUTES = [
     ("modes:kd", "float[]", [], None, None, None, "none"),
     ("modes:ks", "float[]", [], None, None, None, "none"),
     ("modes:alpha", "float[]", [], 0, None, None, "none"),
+    ("modes:beta", "float[]", [], 0, 1, None, "none"),
     ("modes:color", "color3f[]", [], 0, None, None, "none"),
 ]
 
