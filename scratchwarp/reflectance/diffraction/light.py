@@ -45,4 +45,23 @@ class PolygonLight:
         return self.vertices.shape[:-2]
 
 
-Light = SphereLight | PolygonLight
+@dataclass(frozen=True, eq=False)
+class DomeLight:
+    """Light from all around: ``values`` ``[h, w]``, radiance >= 0, constant within its cells. Rows run from the normal
+    +z down to -z, columns around from +x over +y, both in even angles. Raises ValueError."""
+
+    values: Any
+
+    def __post_init__(self) -> None:
+        values = numbers("values", self.values, least=0.0)
+        if values.ndim != 2 or 0 in values.shape:
+            raise ValueError(f"values must have shape [h, w], got {list(values.shape)}")
+        object.__setattr__(self, "values", values)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Leading shape: none."""
+        return ()
+
+
+Light = SphereLight | PolygonLight | DomeLight

@@ -7,7 +7,7 @@ import numpy as np
 from . import slice_device
 from .arrays import DEVICE, device_array, launch, outline_array, rules
 from .inputs import common_shape, directions, numbers, option
-from .light import Light, PolygonLight, SphereLight
+from .light import DomeLight, Light, SphereLight
 from .quadrature import quadrature
 from .real_device import vec2, vec3
 from .reflection import PHASES
@@ -43,11 +43,14 @@ def radiance(
     - "closed-form-paper": Eq. 27 with Eq. 29; may be negative. Rectangles and small angles only.
     - "quadrature": the reference, in NumPy, sharing none of the above; slow.
 
+    A dome is the integral over the half circle xi_1 = 0 in 256 parts of even cosine, for "slices" and the closed forms
+    alike: exact where it is even, and good where it changes little over 1 / (sigma k) = 0.001.
+
     Ends: "slices" integrates the lobe that they widen; the closed forms keep its share of energy alone.
     float64 ``[...]``. Raises ValueError naming the argument and its value.
     """
-    if not isinstance(light, SphereLight | PolygonLight):
-        raise ValueError(f"light must be a SphereLight or a PolygonLight, got {light!r}")
+    if not isinstance(light, Light):
+        raise ValueError(f"light must be a SphereLight, a PolygonLight or a DomeLight, got {light!r}")
     if not isinstance(s, Scratch):
         raise ValueError(f"s must be a diffraction.Scratch, got {s!r}")
     option("method", method, METHODS)
@@ -97,6 +100,10 @@ def _on_device(
         center = device_array(np.broadcast_to(light.center, (*shape, 3)).reshape(-1, 3), vec3)
         radius = device_array(np.broadcast_to(light.radius, shape).reshape(-1))
         return launch(sphere_kernel, shape, q, tables, rule, center, radius)
+    if isinstance(light, DomeLight):
+        from .dome_kernels import dome_kernel
+
+        return launch(dome_kernel, shape, q, tables, rule, device_array(light.values))
     corners = light.vertices.shape[-2]
     vertices = np.broadcast_to(light.vertices, (*shape, corners, 3)).reshape(-1, 3)
     return launch(polygon_kernel, shape, q, tables, rule, device_array(vertices, vec3), corners)

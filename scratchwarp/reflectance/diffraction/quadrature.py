@@ -6,7 +6,7 @@ is integrated numerically and finite scratches by their defining integral. Relat
 
 import numpy as np
 
-from .light import Light, SphereLight
+from .light import DomeLight, Light, SphereLight
 from .scratch import Scratch
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
@@ -24,11 +24,12 @@ def quadrature(
     names = ("width", "depth", "azimuth", "offset", "coherence_radius", "depth_spread", "roughness")
     values = {name: np.broadcast_to(getattr(s, name), shape).reshape(-1) for name in names}
     ends = None if s.ends is None else np.broadcast_to(s.ends, (*shape, 2)).reshape(-1, 2)
+    geometry = np.zeros((len(wave), 0))
     if isinstance(light, SphereLight):
         radius = np.broadcast_to(light.radius, shape)[..., None]
         spheres = np.concatenate((np.broadcast_to(light.center, (*shape, 3)), radius), axis=-1)
-        geometry: np.ndarray = spheres.reshape(-1, 4)
-    else:
+        geometry = spheres.reshape(-1, 4)
+    elif not isinstance(light, DomeLight):
         corners = light.vertices.shape[-2]
         geometry = np.broadcast_to(light.vertices, (*shape, corners, 3)).reshape(-1, corners, 3)
     out = np.zeros(len(wave))
@@ -38,8 +39,11 @@ def quadrature(
         turn = np.array([[c, d, 0.0], [-d, c, 0.0], [0.0, 0.0, 1.0]])
         if wo[i, 2] <= 0.0:
             continue
-        region = _Cap(turn @ geometry[i, :3], geometry[i, 3]) if geometry.ndim == 2 else _Outline(geometry[i] @ turn.T)
         lobe = _Lobe(one, s.facets, turn @ wo[i], wave[i], dependent, None if ends is None else ends[i])
+        if isinstance(light, DomeLight):
+            out[i] = lobe.under_dome(light.values, turn)
+            continue
+        region = _Cap(turn @ geometry[i, :3], geometry[i, 3]) if geometry.ndim == 2 else _Outline(geometry[i] @ turn.T)
         out[i] = lobe.under(region)
     return out.reshape(shape)
 
@@ -244,6 +248,27 @@ class _Lobe:
             u = 0.5 * (left + right) - 0.5 * width * np.cos(tau)
             weight = weight * 0.5 * width * np.sin(tau)
             total += float(weight @ (self.along(u + self.omega_o[0]) * self._slices(region, u)))
+        return 2.0 * np.exp(-((self.one["offset"] / self.sigma) ** 2)) * total
+
+    def under_dome(self, values: np.ndarray, turn: np.ndarray) -> float:
+        """Integral over the half sphere times ``values``; cells by midpoints of psi, 1e-4 of them."""
+        reach = min(_REACH / (self.sigma * self.k), 1.0) if self.ends is None else 1.0
+        x, weight = _composite(np.linspace(-reach, reach, 3 if self.ends is None else 200))
+        x = np.where(np.abs(x - self.omega_o[0]) < 1.0, x, np.nan)
+        psi = np.pi * ((np.arange(20000) + 0.5) / 20000 - 0.5)
+        along, total = self.along(np.nan_to_num(x)), 0.0
+        for xi1, part in zip(x, weight * along, strict=True):
+            if np.isnan(xi1) or part == 0.0:
+                continue
+            u = xi1 - self.omega_o[0]
+            s = np.sqrt(1.0 - u * u)
+            height = s * np.cos(psi)
+            w = np.stack((np.full_like(psi, u), s * np.sin(psi), height), axis=-1) @ turn
+            rows = np.minimum((np.arccos(w[:, 2]) / np.pi * values.shape[0]).astype(int), values.shape[0] - 1)
+            turns = np.arctan2(w[:, 1], w[:, 0]) / (2.0 * np.pi) % 1.0
+            columns = np.minimum((turns * values.shape[1]).astype(int), values.shape[1] - 1)
+            seen = values[rows, columns] * height * self.across(self.omega_o[1] + s * np.sin(psi), height)
+            total += float(part * seen.sum() * np.pi / 20000)
         return 2.0 * np.exp(-((self.one["offset"] / self.sigma) ** 2)) * total
 
     def _slices(self, region: _Cap | _Outline, u: np.ndarray) -> np.ndarray:
