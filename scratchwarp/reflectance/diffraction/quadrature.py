@@ -24,7 +24,7 @@ def quadrature(
     names = ("width", "depth", "azimuth", "offset", "coherence_radius", "depth_spread", "roughness")
     values = {name: np.broadcast_to(getattr(s, name), shape).reshape(-1) for name in names}
     ends = None if s.ends is None else np.broadcast_to(s.ends, (*shape, 2)).reshape(-1, 2)
-    geometry = np.zeros((len(wave), 0))
+    geometry: np.ndarray = np.zeros((len(wave), 0))
     if isinstance(light, SphereLight):
         radius = np.broadcast_to(light.radius, shape)[..., None]
         spheres = np.concatenate((np.broadcast_to(light.center, (*shape, 3)), radius), axis=-1)
