@@ -18,7 +18,7 @@ from ..scene import MeshLight, Scene
 from ..scene.digest import digest
 from ..scene.light import Light as LightRecord
 from ..scratches import KINDS, curves
-from . import geometry, glints, material
+from . import geometry, glints, maps, material
 from .camera_device import CameraData
 from .key import KernelKey
 from .parts import Parts
@@ -76,6 +76,8 @@ def kernel_key(scene: Scene, plan: EffectPlan) -> KernelKey:
         diffuse_scratches=bool(distributions) and on("scratches.diffuse"),
         sum_coverage=bool(distributions) and on("scratches.sumCoverage"),
         variation=bool(distributions) and on("scratches.variation"),
+        masks=bool(distributions) and on("scratches.masks"),
+        orientations=bool(distributions) and on("scratches.orientation"),
         light_links=on("lights.links"),
         light_multipliers=on("lights.multipliers"),
         mesh_lights="mesh" in kinds,
@@ -204,6 +206,11 @@ def assemble(
         "responses", (digest(used), scene.textures), lambda: pack_responses(used, device, scene.textures)
     )
     scratch_set.responses = responding.arrays
+    scratch_set.maps = parts.part(
+        "maps",
+        (digest(plan.layers), scene.textures, scene.meshes, placed, key.masks, key.orientations),
+        lambda: maps.pack_maps(scene, plan.layers, shape.arrays, key.masks, key.orientations, device),
+    )
     scratch_set.variations = material.pack_variations(plan.layers if key.variation else (), device)
     sparkle = parts.part(
         "glints",

@@ -16,7 +16,7 @@ class KernelKey:
         normal_maps, display_colors, textures: of the materials.
         preview, measured: UsdPreviewSurface bases, ScratchSurface bases.
         diffuse_scratches: some scratch is a Lambert surface. sum_coverage: coverages of layers add up (Eq. 4).
-        variation: scratches of one layer differ.
+        variation: scratches of one layer differ. masks, orientations: maps say where layers are, which way they run.
         light_links: some light picks what it lights.
         light_multipliers: some light's diffuse or specular multiplier is not 1.
         mesh_lights: some geometry is a light. path: indirect bounces.
@@ -44,6 +44,8 @@ class KernelKey:
     diffuse_scratches: bool = False
     sum_coverage: bool = False
     variation: bool = False
+    masks: bool = False
+    orientations: bool = False
     light_links: bool = False
     light_multipliers: bool = False
     mesh_lights: bool = False

@@ -8,7 +8,7 @@ would count the area twice where they cross, and a material would grow more scra
 import warp as wp
 
 from ..optics.frames_device import Frame
-from ..optics.hash_device import pcg_hash
+from ..optics.hash_device import pcg_hash, unit_float
 from ..scratches import device_function, kind_number
 from ..scratches.curves_device import curves, drawn_curve
 from ..scratches.layer_device import LayerData, LayerHit, random_bits
@@ -16,6 +16,7 @@ from ..scratches.variation_device import varied_table
 from .geometry_device import Geometry, Surface, uv_motion
 from .key import KernelKey
 from .lobe_device import Layers
+from .maps_device import follow, in_pattern, laid_along, masked, oriented
 from .material_device import MaterialData
 from .world_device import ScratchSet
 
@@ -77,6 +78,13 @@ def make_gather(key: KernelKey):
             flip = wp.vec2d(scale[0], wp.float64(handed) * scale[1])
             sx = float(flip[0])
             sy = float(flip[1])
+            turned = wp.vec2(0.0, 0.0)  # direction that a map gives, in pattern space
+            if wp.static(key.orientations):
+                random = wp.frac(phase + 0.381966 * float(k))
+                along_du = oriented(scratches.maps, m.first_layer + k, s, jx, jy, random)
+                if along_du[0] != 0.0 or along_du[1] != 0.0:
+                    turned = in_pattern(g, s, along_du[0] * flat + along_du[1] * across, flip)
+                    layer = laid_along(layer, turned, unit_float(pcg_hash(random_bits(random))))
             hit = covered(
                 layer,
                 wp.vec2d(s.uv[0] * flip[0], s.uv[1] * flip[1]),
@@ -85,6 +93,9 @@ def make_gather(key: KernelKey):
                 wp.vec2(jy[0] * sx, jy[1] * sy),
                 wp.frac(phase + 0.618034 * float(k)),
             )
+            if wp.static(key.orientations):
+                if turned[0] != 0.0 or turned[1] != 0.0:
+                    hit.direction = follow(hit.direction, layer, turned)
             stroke = wp.vec3(0.0, 0.0, 0.0)
             if wp.static("curves" in key.distributions):
                 if layer.kind == wp.static(strokes_number) and layer.bvh != wp.uint64(0):
@@ -93,6 +104,8 @@ def make_gather(key: KernelKey):
                     stroke = drawn.direction
                     if wp.static(key.variation):
                         hit = drawn_curve(scratches.segments, layer, drawn)
+            if wp.static(key.masks):
+                hit.alpha *= masked(scratches.maps, m.first_layer + k, s, jx, jy, wp.frac(phase + 0.7548777 * float(k)))
             if hit.alpha > SMALLEST_COVERAGE:
                 total += hit.alpha
                 bare *= 1.0 - wp.min(hit.alpha, 1.0)

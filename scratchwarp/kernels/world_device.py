@@ -9,6 +9,7 @@ from ..scratches.curves_device import SegmentArrays
 from ..scratches.layer_device import LayerData
 from ..scratches.variation_device import VariationData
 from .glint_arrays_device import GlintArrays
+from .maps_device import MapSet
 
 wp.set_module_options({"enable_backward": False})
 
@@ -32,6 +33,7 @@ class ScratchSet:
 
     layers: wp.array(dtype=LayerData)
     variations: wp.array(dtype=VariationData)  # of each layer, where scratches of some layer differ
+    maps: MapSet  # of each layer, where some layer has any
     segments: SegmentArrays
     tables: TableArrays
     responses: ResponseArrays

@@ -13,7 +13,7 @@ from ..lights.registry import MODELS
 from ..reflectance.responses import RESPONSES
 from ..scene import DistantLight, Material, PreviewSurface, Scene, ScratchSurface, Settings, SphereLight, TextureInput
 from ..scene.light import Light
-from ..scratches import KINDS
+from ..scratches import KINDS, ORIENTED
 from .choice import LayerPlan, ResponsePlan, TablePlan
 from .occlusion import can_occlude
 from .wave_effects import WAVE_EFFECTS
@@ -109,6 +109,18 @@ def _variation(f: Facts) -> Answer:
         f"scratches of one layer differ: {len(tables)} tables stand for them",
         "the scratches of each layer are alike",
     )
+
+
+def _masks(f: Facts) -> Answer:
+    layers = [p.sublayer.layer for p in f.every]
+    found = [x.label for x in layers if x.mask_primvar or x.mask_texture >= 0]
+    return _answer(found, "masks multiply the coverage of these layers", "no layer has a mask")
+
+
+def _orientation(f: Facts) -> Answer:
+    subs = [p.sublayer for p in f.every if p.sublayer.distribution in ORIENTED]
+    found = [x.layer.label for x in subs if x.layer.orientation_primvar or x.layer.orientation_texture >= 0]
+    return _answer(found, "maps turn the scratches of these layers", "no layer has a map of directions")
 
 
 def _grooves(f: Facts) -> Answer:
@@ -220,6 +232,8 @@ EFFECTS: dict[str, Callable[[Facts], Answer]] = {
     **{response.effect: _response(name) for name, response in RESPONSES.items()},
     "scratches.sumCoverage": _sum_coverage,
     "scratches.variation": _variation,
+    "scratches.masks": _masks,
+    "scratches.orientation": _orientation,
     **WAVE_EFFECTS,
     "grooves": _grooves,
     "base.preview": lambda f: _surfaces(

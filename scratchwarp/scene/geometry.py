@@ -24,6 +24,8 @@ class Mesh:
         slots: index into ``Instance.materials`` of each triangle, shape [m], int32.
         faces: source face of each triangle, shape [m], int32.
         double_sided: the prim's doubleSided attribute.
+        primvars: name of a primvar that scratch layers read -> its values at each triangle corner, shape [m, 3, 1 to
+            3].
     """
 
     path: str
@@ -36,6 +38,7 @@ class Mesh:
     slots: np.ndarray | None = None
     faces: np.ndarray | None = None
     double_sided: bool = False
+    primvars: Mapping[str, np.ndarray] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         points = freeze(self.path, "points", self.points, (None, 3))
@@ -51,6 +54,9 @@ class Mesh:
             triangles=triangles,
             slots=freeze(self.path, "slots", slots, (m,), np.int32),
             faces=freeze(self.path, "faces", faces, (m,), np.int32),
+            primvars=MappingProxyType(
+                {k: freeze(self.path, f"primvars[{k}]", v, (m, 3, None)) for k, v in self.primvars.items()}
+            ),
             uvs=MappingProxyType({k: freeze(self.path, f"uvs[{k}]", v, (m, 3, 2)) for k, v in self.uvs.items()}),
         )
         for name in ("normals", "tangents", "colors"):

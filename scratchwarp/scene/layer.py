@@ -75,6 +75,9 @@ class Layer:
         cross_angle: radians between the two sets of a crosshatch.
         variation_length: how far one goes along a scratch until its width, depth and profile have changed and come
             back, in the unit of length; 0: each scratch is alike all along.
+        mask_texture, orientation_texture: indices into ``Scene.textures``, -1: none; mask_primvar, orientation_primvar:
+            names in ``Mesh.primvars``, empty: none; orientation_encoding: angle or vector. The primvar of an
+            orientation wins over its texture.
         profile_end, profile_variation: another cross-section, and how far scratches go towards it at most, in [0, 1].
         extra: further attributes by schema name, as authored.
         normal_map: of model normalMap.
@@ -116,9 +119,15 @@ class Layer:
     profile_variation: float = 0.0
     profile_end: Profile | None = None
     normal_map: NormalMap | None = None
+    mask_texture: int = -1
+    mask_primvar: str = ""
+    orientation_texture: int = -1
+    orientation_encoding: str = "vector"
+    orientation_primvar: str = ""
 
     def __post_init__(self) -> None:
         who = self.label
+        one_of(who, "orientationEncoding", self.orientation_encoding, ("angle", "vector"))
         one_of(who, "model", self.model, MODELS)
         one_of(who, "distribution", self.distribution, DISTRIBUTIONS)
         one_of(who, "space", self.space, SPACES)

@@ -61,6 +61,10 @@ class Scene:
             for index in instance.materials:
                 if not 0 <= index < len(self.materials):
                     raise ValueError(f"{instance.path}: material {index} is not one of {len(self.materials)}")
+        for layer in (layer for material in self.materials for layer in material.layers):
+            for index in (layer.mask_texture, layer.orientation_texture):
+                if not -1 <= index < len(self.textures):
+                    raise ValueError(f"{layer.label}: texture {index} is not one of {len(self.textures)}")
         for light in self.lights:
             if isinstance(light, MeshLight) and not 0 <= light.instance < len(self.instances):
                 raise ValueError(f"{light.path}: instance {light.instance} is not one of {len(self.instances)}")

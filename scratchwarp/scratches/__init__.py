@@ -28,6 +28,9 @@ KINDS = {
     "curves": ("scratchwarp.scratches.curves_device", "curves"),
 }
 
+# Patterns that can be laid along a map of directions; circles, spirals and curves go their own way.
+ORIENTED = ("worley", "linear", "full")
+
 
 def kind_number(distribution: str) -> int:
     """The number that ``LayerData.kind`` holds for a distribution of ``KINDS``."""

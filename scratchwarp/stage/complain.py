@@ -39,6 +39,11 @@ def _material(reading: Reading, path: str, mesh: Mesh, material: Material) -> No
             reading.warn(
                 path, f"has no primvars:st; the directions of {material.path} follow a stable fallback tangent"
             )
+    for layer in material.layers:
+        for name in {layer.mask_primvar, layer.orientation_primvar} - {"", *mesh.primvars}:
+            reading.warn(path, f"has no primvars:{name}, which layer {layer.name!r} of {material.path} reads")
+        if not mesh.uvs and (layer.mask_texture >= 0 or layer.orientation_texture >= 0):
+            reading.warn(path, f"has no primvars:st; the maps of layer {layer.name!r} of {material.path} have no place")
     if isinstance(material.surface, PreviewSurface):
         inputs = [v for v in vars(material.surface).values() if isinstance(v, TextureInput)]
         for missing in sorted({i.uv_set for i in inputs} - set(mesh.uvs)):

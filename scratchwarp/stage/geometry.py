@@ -67,7 +67,7 @@ def read_geometry(reading: Reading, places: Sequence[Placed]) -> Geometry:
             if "ScratchCurvesAPI" not in prim.GetAppliedSchemas():
                 reading.warn(prim.GetPath(), f"geometry of type {prim.GetTypeName()} is not rendered")
             continue
-        key = _key(prim)
+        key = _key(reading, prim)
         if key not in known:
             mesh = reader(reading, prim)
             known[key] = None if mesh is None else len(found.meshes)
@@ -79,12 +79,13 @@ def read_geometry(reading: Reading, places: Sequence[Placed]) -> Geometry:
     return found
 
 
-def _key(prim: Usd.Prim) -> tuple[str, ...]:
+def _key(reading: Reading, prim: Usd.Prim) -> tuple[str, ...]:
     """What a prim's mesh depends on: the prim (of the prototype) and inherited primvars from outside the prototype."""
     if not prim.IsInstanceProxy():
         return (str(prim.GetPath()),)
     api = UsdGeom.PrimvarsAPI(prim)
-    inherited = [api.FindPrimvarWithInheritance(name) for name in _INHERITED] + uv_primvars(api)
+    names = (*_INHERITED, *sorted(reading.primvars))
+    inherited = [api.FindPrimvarWithInheritance(name) for name in names] + uv_primvars(api)
     owners = [p.GetAttr() for p in inherited if p and p.HasValue()]
     outside = [str(a.GetPath()) for a in owners if not a.GetPrim().IsInstanceProxy()]
     return (shared_path(prim), *outside)

@@ -42,12 +42,12 @@ _TOKENS = {
 }
 _PROFILE_PARAMETERS = ("apex", "floorWidth", "sigma")
 _EXTRA = ("ends",)
-_UNHONOURED = ("maskTexture", "maskPrimvar", "orientationTexture", "orientationPrimvar")
+_MAPS = {"maskTexture": "mask_texture", "orientationTexture": "orientation_texture"}
+PRIMVARS = {"maskPrimvar": "mask_primvar", "orientationPrimvar": "orientation_primvar"}
+"""Attribute that names a primvar of the meshes -> field of Layer."""
 
 
-def read_layers(
-    reading: Reading, prim: Usd.Prim, curves: CurveSets, textures: Textures | None = None
-) -> tuple[Layer, ...]:
+def read_layers(reading: Reading, prim: Usd.Prim, curves: CurveSets, textures: Textures) -> tuple[Layer, ...]:
     """The enabled layers applied to a material, in cutting order: by ``order``, ties by name.
 
     Values that no layer can have raise StageError, naming the prim, the layer and the value.
@@ -58,7 +58,18 @@ def read_layers(
     return tuple(sorted(layers, key=lambda layer: (layer.order, layer.name)))
 
 
-def _layer(reading: Reading, prim: Usd.Prim, name: str, curves: CurveSets, textures: Textures | None) -> Layer:
+def layer_primvars(stage: Usd.Stage) -> frozenset[str]:
+    """Names of the primvars that any scratch layer of the stage reads."""
+    found = set()
+    for prim in Usd.PrimRange(stage.GetPseudoRoot(), Usd.TraverseInstanceProxies()):
+        for schema in prim.GetAppliedSchemas():
+            if schema.startswith(_API):
+                values = [prim.GetAttribute(f"{_PREFIX}{schema.removeprefix(_API)}:{a}").Get() for a in PRIMVARS]
+                found |= {str(v) for v in values if v}
+    return frozenset(found)
+
+
+def _layer(reading: Reading, prim: Usd.Prim, name: str, curves: CurveSets, textures: Textures) -> Layer:
     def get(attribute: str, otherwise: Any = None) -> Any:
         return reading.value(prim, f"{_PREFIX}{name}:{attribute}", otherwise)
 
@@ -66,10 +77,17 @@ def _layer(reading: Reading, prim: Usd.Prim, name: str, curves: CurveSets, textu
     fields: dict[str, Any] = {field: float(get(attribute)) for attribute, field in _NUMBERS.items()}
     for attribute in _ANGLES:
         fields[_NUMBERS[attribute]] = float(np.radians(fields[_NUMBERS[attribute]]))
-    for attribute in _UNHONOURED:
-        if _path_or_text(get(attribute)):
-            reading.warn(where, f"{_PREFIX}*:{attribute} is not honoured")
     tokens: dict[str, Any] = {field: str(get(attribute)) for attribute, field in _TOKENS.items()}
+    for attribute, field in _MAPS.items():
+        asset = get(attribute)
+        fields[field] = textures.index(where, asset, "raw") if _path_or_text(asset) else -1
+    tokens |= {field: str(get(attribute)) for attribute, field in PRIMVARS.items()}
+    tokens["orientation_encoding"] = str(get("orientationEncoding"))
+    if tokens["orientation_primvar"] and fields["orientation_texture"] >= 0:
+        reading.warn(where, "has an orientationPrimvar and an orientationTexture; the primvar is used")
+    unturned = ("concentric", "spiral", "curves")
+    if (tokens["orientation_primvar"] or fields["orientation_texture"] >= 0) and tokens["distribution"] in unturned:
+        reading.warn(where, f"distribution {tokens['distribution']} has directions of its own; no map turns it")
     targets = prim.GetRelationship(f"{_PREFIX}{name}:curves").GetForwardedTargets()
     if tokens["distribution"] == "curves" and not targets:
         reading.warn(where, "distribution is curves but its relationship curves has no target; it has no scratches")

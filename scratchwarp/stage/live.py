@@ -17,7 +17,7 @@ from scratchwarp.whole import whole
 
 from . import controls
 from .curves import CurveSets
-from .layer import read_layers, read_wave
+from .layer import layer_primvars, read_layers, read_wave
 from .open import gathered_diagnostics, usd_errors
 from .read import opened, read_scene
 from .reading import Reading, Warnings
@@ -194,10 +194,10 @@ class LiveStage:
         # a reading of its own: matrices and warnings of the last one are stale
         reading = replace(self._reading, warn=warnings)
         with gathered_diagnostics(self.path, warnings), usd_errors(self.path):
-            if only_layers:
+            if only_layers and layer_primvars(self._stage) <= self._kept.primvars:
                 scene = self._with_layers(reading)
             else:
-                scene, _ = read_scene(reading, self._settings, self._camera, self._kept, old.origin)
+                scene, self._kept = read_scene(reading, self._settings, self._camera, self._kept, old.origin)
         kept = ("meshes", "textures", "curves")
         same: dict[str, Any] = {name: _same(getattr(old, name), getattr(scene, name)) for name in kept}
         self.scene = replace(scene, **same, time=old.time, seconds=old.seconds, warnings=warnings.lines())
@@ -207,14 +207,20 @@ class LiveStage:
     def _with_layers(self, reading: Reading) -> Scene:
         """The scene with the layers of its materials read again."""
         curves = CurveSets(reading, self.scene.origin)
+        textures = self._kept.textures
         materials = []
         for material in self.scene.materials:
             prim = self._stage.GetPrimAtPath(material.path) if material.path else None
             if prim:
-                layers = read_layers(reading, prim, curves)
+                layers = read_layers(reading, prim, curves, textures)
                 material = replace(material, layers=layers, wave=read_wave(reading, prim))
             materials.append(material)
-        return replace(self.scene, materials=tuple(materials), curves=tuple(curves.records))
+        return replace(
+            self.scene,
+            materials=tuple(materials),
+            curves=tuple(curves.records),
+            textures=tuple(textures.records),
+        )
 
     @contextmanager
     def attempt(self) -> Iterator[None]:

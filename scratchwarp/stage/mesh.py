@@ -65,6 +65,7 @@ def read_mesh(reading: Reading, prim: Usd.Prim) -> Mesh | None:
         colors=_colors(reading, api, corners),
         slots=_slots(reading, prim, corners),
         faces=corners.faces,
+        primvars=_layer_primvars(reading, api, corners),
         double_sided=bool(reading.value(prim, "doubleSided", False)),
     )
 
@@ -157,6 +158,19 @@ def _colors(reading: Reading, api: UsdGeom.PrimvarsAPI, corners: Corners) -> np.
     if not (primvar and primvar.HasValue()):
         return None
     return read_primvar(reading, primvar, corners, 3, lambda values: color(reading, primvar.GetAttr(), values))
+
+
+def _layer_primvars(reading: Reading, api: UsdGeom.PrimvarsAPI, corners: Corners) -> dict[str, np.ndarray]:
+    """The primvars that scratch layers read, with one to three components."""
+    found = {}
+    for name in sorted(reading.primvars):
+        primvar = api.FindPrimvarWithInheritance(name)
+        if primvar and primvar.HasValue():
+            one = primvar.GetTypeName().scalarType.defaultValue
+            values = read_primvar(reading, primvar, corners, min(len(one), 3) if hasattr(one, "__len__") else 1)
+            if values is not None:
+                found[name] = values
+    return found
 
 
 def _slots(reading: Reading, prim: Usd.Prim, corners: Corners) -> np.ndarray:

@@ -15,6 +15,7 @@ from .complain import complain
 from .curves import CurveSets
 from .geometry import Geometry, read_geometry
 from .illuminate import read_lights
+from .layer import layer_primvars
 from .material import Materials
 from .open import gathered_diagnostics, metres_per_unit, open_stage, usd_errors
 from .options import StageSettings, read_settings
@@ -83,6 +84,7 @@ class Kept:
 
     geometry: Geometry
     textures: Textures
+    primvars: frozenset[str] = frozenset()
 
 
 def opened(
@@ -131,9 +133,11 @@ def read_scene(
     ``kept``: of an earlier reading, where no mesh has changed or moved since. ``origin``: the scene's [m], where it
     shall not be the camera's position.
     """
+    reading = replace(reading, primvars=layer_primvars(reading.stage))
     places = placed_prims(reading)
-    if kept is None:
-        kept = Kept(read_geometry(reading, places), Textures(reading))
+    if kept is None or not reading.primvars <= kept.primvars:
+        textures = Textures(reading) if kept is None else kept.textures
+        kept = Kept(read_geometry(reading, places), textures, reading.primvars)
     geometry, textures = Geometry(list(kept.geometry.meshes), kept.geometry.placements), kept.textures
     view, eye = _camera(reading, find_camera(reading, camera, settings.camera), geometry, settings)
     if origin is None:

@@ -48,6 +48,7 @@ class Reading:
         purposes: purposes to include.
         warn: ``warn(prim path, sentence)``.
         load_texture: decodes an image file; None: textures give their fallback.
+        primvars: names of primvars that scratch layers read.
         xforms: local-to-world matrices at ``time``, cached.
     """
 
@@ -58,6 +59,7 @@ class Reading:
     purposes: tuple[str, ...] = ("default", "render")
     warn: Warnings = field(default_factory=Warnings)
     load_texture: TextureLoader | None = None
+    primvars: frozenset[str] = frozenset()
     xforms: UsdGeom.XformCache = field(init=False)
 
     def __post_init__(self) -> None:

@@ -198,9 +198,9 @@ def Mesh "m" (prepend apiSchemas = ["MaterialBindingAPI"]) {
 
 
 def test_what_has_no_room_yet_warns(read, said):
-    body = PROFILE + "uniform asset scratch:layer:fine:maskTexture = @mask.png@"
+    body = PROFILE + "uniform asset scratch:layer:fine:normalTexture = @bumps.png@"
     scene = read(scratched(body, ("ScratchLayerAPI:fine", "ScratchMeasuredAPI"), VEE))
-    said(scene, "/mat layer 'fine'", "maskTexture")
+    said(scene, "/mat layer 'fine'", "normalTexture")
     said(scene, "/mat:", "ScratchMeasuredAPI")
 
 
