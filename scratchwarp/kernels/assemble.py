@@ -10,6 +10,7 @@ import warp as wp
 from .. import lights
 from ..lights.light_device import Light
 from ..plan import EffectPlan
+from ..plan.choice import LayerPlan
 from ..reflectance import profile_table
 from ..reflectance.responses import RESPONSES
 from ..reflectance.responses.pack import pack as pack_responses
@@ -179,10 +180,13 @@ def assemble(
     def layers() -> material.PackedMaterials:
         packed_layers = None
         if key.distributions:
-            packed_layers = [
-                [material.pack_layer(p, sets[p.sublayer.curves] if p.sublayer.curves >= 0 else None) for p in own]
-                for own in plan.layers
-            ]
+            numbers = iter(range(sum(len(own) for own in plan.layers)))
+
+            def packed_layer(p: LayerPlan) -> Any:
+                strip = sets[p.sublayer.curves] if p.sublayer.curves >= 0 else None
+                return material.pack_layer(p, strip, next(numbers) if maps.has_maps(p.sublayer.layer) else -1)
+
+            packed_layers = [[packed_layer(p) for p in own] for own in plan.layers]
         bases = {n: (r, plan.responses[r].albedo) for n, r in enumerate(plan.bases) if r >= 0 and key.responses}
         return material.pack(scene, packed_layers or [[] for _ in scene.materials], atlas, device, bases)
 
@@ -208,7 +212,7 @@ def assemble(
     scratch_set.responses = responding.arrays
     scratch_set.maps = parts.part(
         "maps",
-        (digest(plan.layers), scene.textures, scene.meshes, placed, key.masks, key.orientations),
+        maps.sources(scene, plan.layers, placed, key.masks, key.orientations),
         lambda: maps.pack_maps(scene, plan.layers, shape.arrays, key.masks, key.orientations, device),
     )
     scratch_set.variations = material.pack_variations(plan.layers if key.variation else (), device)

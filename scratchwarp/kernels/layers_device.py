@@ -81,7 +81,7 @@ def make_gather(key: KernelKey):
             turned = wp.vec2(0.0, 0.0)  # direction that a map gives, in pattern space
             if wp.static(key.orientations):
                 random = wp.frac(phase + 0.381966 * float(k))
-                along_du = oriented(scratches.maps, m.first_layer + k, s, jx, jy, random)
+                along_du = oriented(scratches.maps, layer.maps, s, jx, jy, random)
                 if along_du[0] != 0.0 or along_du[1] != 0.0:
                     turned = in_pattern(g, s, along_du[0] * flat + along_du[1] * across, flip)
                     layer = laid_along(layer, turned, unit_float(pcg_hash(random_bits(random))))
@@ -105,7 +105,7 @@ def make_gather(key: KernelKey):
                     if wp.static(key.variation):
                         hit = drawn_curve(scratches.segments, layer, drawn)
             if wp.static(key.masks):
-                hit.alpha *= masked(scratches.maps, m.first_layer + k, s, jx, jy, wp.frac(phase + 0.7548777 * float(k)))
+                hit.alpha *= masked(scratches.maps, layer.maps, s, jx, jy, wp.frac(phase + 0.7548777 * float(k)))
             if hit.alpha > SMALLEST_COVERAGE:
                 total += hit.alpha
                 bare *= 1.0 - wp.min(hit.alpha, 1.0)

@@ -11,6 +11,7 @@ from ..plan.choice import LayerPlan
 from ..reflectance.pyramid import doubled, doubled_vectors, pack_pyramids
 from ..scene import Layer, Mesh, Scene
 from ..scratches import ORIENTED
+from ..scratches.expand import Sublayer
 from .maps_device import LayerMaps, MapSet
 
 Array = np.ndarray[Any, Any]
@@ -73,12 +74,36 @@ def _normals(points: Array) -> Array:
     return cross / np.maximum(np.linalg.norm(cross, axis=1), 1e-30)[:, None]
 
 
+def has_maps(layer: Layer) -> bool:
+    """Whether a layer names any mask or orientation."""
+    return max(layer.mask_texture, layer.orientation_texture) >= 0 or bool(
+        layer.mask_primvar or layer.orientation_primvar
+    )
+
+
+def mapped(layers: Sequence[Sequence[LayerPlan]]) -> list[Sublayer]:
+    """The sublayers with maps, in the order in which their records are packed."""
+    return [p.sublayer for own in layers for p in own if has_maps(p.sublayer.layer)]
+
+
+def sources(
+    scene: Scene, layers: Sequence[Sequence[LayerPlan]], placed: Any, masks: bool, oriented: bool
+) -> tuple[Any, ...]:
+    """Everything that ``pack_maps`` looks at; ``placed`` stands for the instances."""
+    own: list[Any] = []
+    for sub in mapped(layers) if masks or oriented else []:
+        x = sub.layer
+        textures, names = (x.mask_texture, x.orientation_texture), (x.mask_primvar, x.orientation_primvar)
+        own.append((textures, names, x.orientation_encoding, sub.distribution, sub.angle))
+    return (tuple(own), scene.textures, scene.meshes, placed, masks, oriented) if own else ()
+
+
 def pack_maps(
     scene: Scene, layers: Sequence[Sequence[LayerPlan]], shape: Any, masks: bool, oriented: bool, device: str = "cpu"
 ) -> MapSet:
-    """Maps of the sublayers of all materials, in order. ``shape``: the scene's packed ``Geometry``; ``masks``,
+    """Maps of ``mapped(layers)``. ``shape``: the scene's packed ``Geometry``; ``masks``,
     ``oriented``: which of the maps are on."""
-    every = [plan.sublayer for own in layers for plan in own] if masks or oriented else []
+    every = mapped(layers) if masks or oriented else []
     images: dict[tuple[int, str], int] = {}
     rows: dict[str, list[str]] = {"mask": [], "orientation": []}
 

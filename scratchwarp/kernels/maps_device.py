@@ -34,7 +34,7 @@ class LayerMaps:
 
 @wp.struct
 class MapSet:
-    """Maps of all sublayers, in their order."""
+    """Maps of the sublayers that have any; ``LayerData.maps`` is their place here."""
 
     layers: wp.array(dtype=LayerMaps)
     pyramids: Pyramids
@@ -44,9 +44,11 @@ class MapSet:
 
 @wp.func
 def masked(maps: MapSet, index: int, s: Surface, jx: wp.vec2, jy: wp.vec2, phase: float) -> float:
-    """What masks leave of a sublayer, in [0, 1]."""
-    m = maps.layers[index]
+    """What masks leave of a sublayer, in [0, 1]; ``index``: its maps, -1 for none."""
     left = float(1.0)
+    if index < 0:
+        return left
+    m = maps.layers[index]
     if m.mask >= 0:
         left = wp.clamp(averaged(maps.pyramids, m.mask, s.uv, jx, jy, phase).value[0], 0.0, 1.0)
     if m.mask_primvar >= 0:
@@ -60,8 +62,10 @@ def masked(maps: MapSet, index: int, s: Surface, jx: wp.vec2, jy: wp.vec2, phase
 @wp.func
 def oriented(maps: MapSet, index: int, s: Surface, jx: wp.vec2, jy: wp.vec2, phase: float) -> wp.vec2:
     """Direction of a sublayer's scratches as (cos, sin) of the angle from dP/du; (0, 0) where no map turns it."""
-    m = maps.layers[index]
     result = wp.vec2(0.0, 0.0)
+    if index < 0:
+        return result
+    m = maps.layers[index]
     if m.orientation >= 0 or m.orientation_primvar >= 0:
         two = wp.vec2(0.0, 0.0)
         spread = float(0.0)

@@ -80,8 +80,9 @@ def _scratch_surface(m: MaterialData, s: ScratchSurface) -> None:
     m.opacity_read = m.normal_read = -1
 
 
-def pack_layer(plan: LayerPlan, curves: Any = None) -> LayerData:
-    """Device record of one sublayer; see ``LayerData``. ``curves``: its packed segments, if it has any."""
+def pack_layer(plan: LayerPlan, curves: Any = None, maps: int = -1) -> LayerData:
+    """Device record of one sublayer; see ``LayerData``. ``curves``: its packed segments, if it has any; ``maps``:
+    number of its maps."""
     sub, layer = plan.sublayer, plan.sublayer.layer
     d: Any = LayerData()
     d.kind = kind_number(sub.distribution)
@@ -97,6 +98,7 @@ def pack_layer(plan: LayerPlan, curves: Any = None) -> LayerData:
     d.mean, d.table, d.keeps_diffuse, d.weight = sub.coverage, plan.table, int(plan.keeps_diffuse), plan.weight
     d.diffuse = wp.vec3(*plan.diffuse)
     d.response = plan.response
+    d.maps = maps
     d.varied = int(layer.width_variation > 0.0 or plan.variation is not None)
     wavelength = layer.variation_length or (layer.length if sub.distribution == "spiral" else 0.0)
     d.wave = 1.0 / wavelength if wavelength > 0.0 else 0.0

@@ -40,6 +40,7 @@ class LayerData:
     curve_uv: int  # curves: 1 when segments lie in the uv square
     width_uv: int  # curves: 1 when half widths are fractions of it
     response: int  # what it reflects by in place of a table, -1: nothing
+    maps: int  # masks and directions of the layer in ``kernels.maps_device``, -1: none
     varied: int  # 1: scratches differ from one another
     wave: float  # wavelengths of the variation along a scratch in a pattern unit; 0: none
 

@@ -198,9 +198,7 @@ def Mesh "m" (prepend apiSchemas = ["MaterialBindingAPI"]) {
 
 
 def test_what_has_no_room_yet_warns(read, said):
-    body = PROFILE + "uniform asset scratch:layer:fine:normalTexture = @bumps.png@"
-    scene = read(scratched(body, ("ScratchLayerAPI:fine", "ScratchMeasuredAPI"), VEE))
-    said(scene, "/mat layer 'fine'", "normalTexture")
+    scene = read(scratched(PROFILE, ("ScratchLayerAPI:fine", "ScratchMeasuredAPI"), VEE))
     said(scene, "/mat:", "ScratchMeasuredAPI")
 
 
