@@ -10,6 +10,7 @@ Files:
     profiles    a ScratchProfile record -> a profile to simulate
     occlusion   whether anything can cast a shadow
     make        make_plan
+    far_bases   scratched materials rendered as such, where somebody asks for it
     far_field   a scratched material as one BRDF and as highlight stencils, for those who ask
 """
 

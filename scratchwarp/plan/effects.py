@@ -97,6 +97,11 @@ def _response(name: str) -> Callable[[Facts], Answer]:
     return rule
 
 
+def _stencil(f: Facts) -> Answer:
+    scratched = sum(bool(m.layers) for m in f.materials)
+    return False, f"on: {scratched} scratched materials become highlight stencils, as they look from far away", ()
+
+
 def _sum_coverage(f: Facts) -> Answer:
     return False, "layers overlap at random, 1 - product (1 - alpha); on: the sum, at most 1 (Raymond 2016 Eq. 4)", ()
 
@@ -231,6 +236,7 @@ EFFECTS: dict[str, Callable[[Facts], Answer]] = {
     "scratches.diffuse": _diffuse_scratches,
     **{response.effect: _response(name) for name, response in RESPONSES.items()},
     "scratches.sumCoverage": _sum_coverage,
+    "scratches.stencil": _stencil,
     "scratches.variation": _variation,
     "scratches.masks": _masks,
     "scratches.orientation": _orientation,

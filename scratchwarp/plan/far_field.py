@@ -19,7 +19,6 @@ from ..reflectance.stencils.angles import grid_directions
 from ..scene import Material, PreviewSurface, Scene, Settings
 from .choice import EffectPlan, LayerPlan, TablePlan
 from .layers import mean_color
-from .make import make_plan
 
 BLUR = np.radians(3.75)  # half a step of azimuth
 _COSINES = np.cos(np.radians((0.0, 15.0, 30.0, 45.0, 60.0, 70.0, 80.0)))
@@ -64,15 +63,30 @@ def tabulate(
         raise ValueError(f"blur must lie in (0, 0.5] rad, got {blur}")
     number = _number(scene, material)
     found = scene.materials[number]
+    from .make import make_plan
+
     chosen = plan or make_plan(scene, Settings())
     layers = chosen.layers[number]
-    w = grid_directions()
-    wi, wo = np.broadcast_to(w[:, None], (len(w), len(w), 3)), np.broadcast_to(w[None], (len(w), len(w), 3))
-    values = evaluate(scene, found, layers, chosen.tables, wi.reshape(-1, 3), wo.reshape(-1, 3), blur)
+    values = tabulate_layers(scene, found, layers, chosen.tables, blur)
     notes = [f"{found.path}: {len(layers)} sets of scratches, blurred by {np.degrees(blur):.3g} degrees."]
     if any(value.__class__.__name__ == "TextureInput" for value in vars(found.surface).values()):
         notes.append("Textures count with their means.")
-    return found, values.reshape(len(w), len(w), 3), tuple(notes)
+    if any(plan.variation is not None for plan in layers):
+        notes.append("Scratches that differ count as the first of them.")
+    return found, values, tuple(notes)
+
+
+def tabulate_layers(
+    scene: Scene,
+    material: Material,
+    layers: tuple[LayerPlan, ...],
+    tables: tuple[TablePlan, ...],
+    blur: float = BLUR,
+) -> np.ndarray:
+    """The BRDF [288, 288, 3] of a planned material; raises as ``evaluate`` does."""
+    w = grid_directions()
+    wi, wo = np.broadcast_to(w[:, None], (len(w), len(w), 3)), np.broadcast_to(w[None], (len(w), len(w), 3))
+    return evaluate(scene, material, layers, tables, wi.reshape(-1, 3), wo.reshape(-1, 3), blur).reshape(wi.shape)
 
 
 def albedo_error(reference: np.ndarray, found: np.ndarray) -> float:
@@ -97,6 +111,8 @@ def evaluate(
 ) -> np.ndarray:
     """f_r [1/sr], float64 [n, 3], of a planned material for unit directions [n, 3] above the horizon."""
     for plan in layers:
+        if plan.response >= 0:
+            raise ValueError(f"{plan.sublayer.layer.label}: model {plan.sublayer.layer.model} has no profile table")
         if plan.sublayer.distribution not in _PLACELESS:
             raise ValueError(
                 f"{plan.sublayer.layer.label}: {plan.sublayer.distribution} scratches run in other directions at other "
@@ -110,7 +126,7 @@ def evaluate(
     value = evaluate_base(base, wi, wo, bare + kept, bare).astype(np.float64) / np.maximum(wi[:, 2:], 1e-6)
     ready: dict[int, np.ndarray] = {}
     for plan, cover in zip(layers, covers, strict=True):
-        if plan.table < 0:
+        if plan.lambert:
             value += share * cover * np.asarray(plan.diffuse) / np.pi
             continue
         if plan.table not in ready:

@@ -47,6 +47,13 @@ def make_plan(scene: Scene, settings: Settings | None = None, earlier: EffectPla
         waves = plan_waves(scene, waved, reflector, decided.model)
         used = sorted({m for instance in scene.instances for m in instance.materials})
         responses, bases = base_responses(scene, used, responses, lambda effect: forced.get(effect, True))
+        far = ""
+        if forced.get("scratches.stencil", False):
+            from .far_bases import far_bases
+
+            layers, responses, bases, far, said = far_bases(scene, used, layers, tables, responses, bases)
+            warnings += said
+            tables = tables if any(plan.table >= 0 for own in layers for plan in own) else ()
     except ValueError as error:
         raise ValueError(f"{scene.path}: {error}") from None
     facts = Facts(scene, decided, tuple(scene.materials[i] for i in used), layers, tables, responses, waves, bases)
@@ -85,6 +92,8 @@ def make_plan(scene: Scene, settings: Settings | None = None, earlier: EffectPla
         "geometry": f"{scene.triangles} triangles in {len(scene.instances)} instances",
         "tables": f"{len(tables)} to simulate, {sum(len(own) for own in layers)} sets of scratches",
     }
+    if far:
+        numbers["stencils"] = far
     return EffectPlan(
         effects=effects,
         settings=decided,

@@ -130,3 +130,20 @@ def test_what_is_no_one_brdf():
         far_field.tabulate(_scene(_layer()), "wood")
     with pytest.raises(ValueError, match="blur"):
         far_field.tabulate(_scene(_layer()), 0, blur=0.0)
+
+
+def test_the_planner_on_request():
+    """Forced on: the base is a stencil model and no scratch is left; what is no one BRDF keeps its scratches."""
+    scene = _scene(_layer(distribution="crosshatch", pitch=100.0, angle=0.3))
+    plain = sw.make_plan(scene)
+    assert not plain.on("scratches.stencil") and plain.on("scratches") and "stencils" not in plain.numbers
+    plan = sw.make_plan(scene, sw.Settings(effects={"scratches.stencil": True}))
+    model = plan.responses[plan.bases[0]].values
+    assert len(model.modes) == 2 and plan.responses[plan.bases[0]].users == ("/mat",)
+    assert plan.layers == ((),) and plan.tables == () and not plan.warnings
+    assert plan.on("base.stencils") and not plan.on("scratches") and not plan.on("scratches.table")
+    assert "/mat 2 modes, PSNR" in plan.explain()
+    turned = _scene(_layer(distribution="concentric"))
+    kept = sw.make_plan(turned, sw.Settings(effects={"scratches.stencil": True}))
+    assert kept.on("scratches") and not kept.on("base.stencils")
+    assert any("is rendered with its scratches" in warning for warning in kept.warnings)

@@ -28,7 +28,8 @@ EVERYTHING = {
     name: True
     for name in EFFECTS
     if name.split(".")[0] in ("lights", "base", "scratches", "shadows", "lens", "indirect")
-    and name not in ("lights.multipliers", "scratches.curves", "scratches.sumCoverage", *RESPONDING)
+    and name not in ("lights.multipliers", "scratches.curves", "scratches.sumCoverage", "scratches.stencil")
+    and name not in RESPONDING
 } | {"lights.closedForm": False}
 
 
