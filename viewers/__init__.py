@@ -19,6 +19,7 @@ Files:
     looking        an image that refines in a thread while its stage is edited; turning moves camera and lights
     web            the same in browsers
     window         all of it together, and the keys of the window
+    live_window    the same, its image refining as sliders and the camera are dragged; overlay lays it over the 3D view
 
 ``view`` opens the window; importing this package imports neither pyvista nor pxr nor Warp.
 """
@@ -35,8 +36,14 @@ KEYS = {
     "l": "camera and lights on or off",
     "t": "triangle edges on or off",
     "n": "the next layers in the plots",
-    "m": "the depth slider moves the next layer",
-    "i": "render again, with these depths and seen from where the window looks",
+    "m": "the sliders move the next layer",
+    "g": "the next shape for the profile of that layer",
+    "h": "the next material for its scratches: the base's by another Fresnel model, metals, glass, diffuse",
+    "x": "that layer on or off",
+    "y": "that layer cuts through the others",
+    "b": "the sliders move the next light",
+    "k": "the rendered image over the 3D view, or beside it alone",
+    "z": "save the edits as NAME.look.usda beside the stage",
     "o": "look through the stage's camera again",
     "q": "close the window",
 }
@@ -92,10 +99,11 @@ def view_profile(source: Path | str, screenshot: Path | str | None = None, **opt
 
 
 def view(stage_path: Path | str, screenshot: Path | str | None = None, **options: Any) -> None:
-    """Show a stage: meshes with the directions of their scratches, each layer's profile and table, the image.
+    """Show a stage: meshes with the directions of their scratches, each layer's profile and table, and the image,
+    which refines while sliders and the camera are dragged.
 
     Opens a window with the keys of ``KEYS``, or writes a picture to ``screenshot`` without a display. ``options`` are
-    those of ``scratchwarp.viewers.window.view``: frame, camera, width, spp, size, page.
+    those of ``scratchwarp.viewers.live_window.view``: frame, camera, width, spp, size, page.
 
     Raises:
         ImportError: pyvista is missing.
@@ -105,7 +113,7 @@ def view(stage_path: Path | str, screenshot: Path | str | None = None, **options
     from .display import pyvista
 
     pyvista()  # says what to install when it is missing
-    from .window import view as show
+    from .live_window import view as show
 
     show(stage_path, screenshot, **options)
 

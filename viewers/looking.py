@@ -62,6 +62,7 @@ class Looking:
         self._condition = threading.Condition()
         self._values: dict[str, Any] = {}
         self._moves: dict[str, Move] = {}
+        self._places: dict[str, np.ndarray] = {}
         self._calls: list[tuple[Future[Any], Callable[[], Any]]] = []
         self._closed = False
         self._failure: BaseException | None = None
@@ -81,6 +82,15 @@ class Looking:
             self._moves[prim] = self._moves[prim].then(move) if prim in self._moves else move
 
         self._ask(add)
+
+    def place(self, prim: str, matrix: np.ndarray) -> None:
+        """Put a light, or the camera for "", where ``LiveStage.place`` says, soon."""
+
+        def put() -> None:
+            self._places[prim] = matrix
+            self._moves.pop(prim, None)
+
+        self._ask(put)
 
     def wait(self, version: int, timeout: float | None = None) -> Shown:
         """What is shown once its version is above ``version``, or what there is when ``timeout`` seconds are over.
@@ -148,7 +158,7 @@ class Looking:
             self._condition.notify_all()
 
     def _asked(self) -> bool:
-        return bool(self._values or self._moves or self._calls or self._closed)
+        return bool(self._values or self._moves or self._places or self._calls or self._closed)
 
     def _run(self) -> None:
         try:
@@ -169,12 +179,12 @@ class Looking:
             self._condition.wait_for(lambda: self._asked() or not session.finished)
             if self._closed:
                 return False
-            values, moves, calls = self._values, self._moves, self._calls
-            self._values, self._moves, self._calls = {}, {}, []
+            values, moves, places, calls = self._values, self._moves, self._places, self._calls
+            self._values, self._moves, self._places, self._calls = {}, {}, {}, []
             # the step that follows belongs to these: whoever asks for the finished image waits for it
-            self.shown = replace(self.shown, samples=0) if values or moves else self.shown
-        if values or moves:
-            self._apply(session, values, moves)
+            self.shown = replace(self.shown, samples=0) if values or moves or places else self.shown
+        if values or moves or places:
+            self._apply(session, values, moves, places)
         for answer, call in calls:
             try:
                 answer.set_result(call())
@@ -185,9 +195,13 @@ class Looking:
             self._publish(session, film)
         return True
 
-    def _apply(self, session: Session, values: Mapping[str, Any], moves: Mapping[str, Move]) -> None:
+    def _apply(
+        self, session: Session, values: Mapping[str, Any], moves: Mapping[str, Move], places: Mapping[str, np.ndarray]
+    ) -> None:
         try:
             with self._live.attempt():
+                for prim, matrix in places.items():
+                    self._live.place(prim, matrix)
                 for prim, move in moves.items():
                     self._live.place(prim, moved(self._live, prim, move))
                 if values:

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-import scratchwarp as sw
 from scratchwarp.scene import Camera, Scene
 
 from . import camera as camera_view
@@ -21,34 +20,6 @@ PAGE = 12  # layers that the plots show at once
 DRAGGED_RAYS = 128  # for each direction of a table while its slider moves
 
 
-def view(
-    stage_path: Path | str,
-    screenshot: Path | str | None = None,
-    *,
-    frame: float | None = None,
-    camera: str | None = None,
-    width: int = 320,
-    spp: int = 4,
-    size: tuple[int, int] = (1600, 1000),
-    page: int = 0,
-) -> None:
-    """Show a stage in a window, or write the picture of one to ``screenshot`` without a display.
-
-    Args:
-        frame, camera: as ``scratchwarp.read`` has them.
-        width, spp: of the rendered image, in pixels and samples a pixel.
-        size: of the window in pixels.
-        page: which dozen of layers the plots show first.
-
-    Raises:
-        OSError: no display, no off-screen OpenGL, or the picture cannot be written.
-        ValueError: the stage is at fault.
-    """
-    if screenshot is not None:
-        check_writable(Path(screenshot))
-    show(sw.read(str(stage_path), frame=frame, camera=camera), screenshot, width=width, spp=spp, size=size, page=page)
-
-
 def show(
     scene: Scene,
     screenshot: Path | str | None = None,
@@ -58,7 +29,8 @@ def show(
     size: tuple[int, int] = (1600, 1000),
     page: int = 0,
 ) -> None:
-    """As ``view`` for a scene that is read."""
+    """Show a scene in a window, or write the picture of one to ``screenshot`` without a display; its image stays as it
+    is first rendered until it is asked for again. See ``live_window.view``, whose arguments these are."""
     if screenshot is not None:
         check_writable(Path(screenshot))
     with canvas(screenshot is not None, size, (2, 2)) as plotter:
@@ -85,7 +57,7 @@ class Window:
             plotter.subplot(row, column)
             plotter.set_background(BACKGROUND)
         self._draw_scene()
-        self._draw_image(image.picture(scene, width, spp))
+        self._draw_image(self._rendered())
         self._draw_layers()
 
     def connect(self) -> None:
@@ -95,7 +67,6 @@ class Window:
         self.plotter.add_key_event("t", self.edges)
         self.plotter.add_key_event("n", self.next_page)
         self.plotter.add_key_event("m", self.next_layer)
-        self.plotter.add_key_event("i", self.render_from_here)
         self.plotter.add_key_event("o", self.look_through)
 
     def toggle(self, name: str) -> None:
@@ -184,6 +155,14 @@ class Window:
 
     def render_from_here(self) -> None:
         """Render again with a pinhole camera where the window's eye is."""
+        matrix, seen = self.eye(), self.plotter.camera
+        high = 2 * np.tan(np.radians(seen.view_angle) / 2)
+        across = high * self._pixels()[0] / self._pixels()[1]
+        self._draw_image(self._rendered(Camera("", matrix, across, high, focal_length=1.0)))
+        self.plotter.render()
+
+    def eye(self) -> np.ndarray:
+        """Camera to world [4, 4] of the window's eye."""
         self.plotter.subplot(0, 0)
         seen = self.plotter.camera
         back = np.subtract(seen.position, seen.focal_point)
@@ -192,11 +171,11 @@ class Window:
         right = right / np.linalg.norm(right)
         matrix = np.eye(4)
         matrix[:3, 0], matrix[:3, 1], matrix[:3, 2], matrix[:3, 3] = right, np.cross(back, right), back, seen.position
-        high = 2 * np.tan(np.radians(seen.view_angle) / 2)
-        across = high * self._pixels()[0] / self._pixels()[1]
-        camera = Camera("", matrix, across, high, focal_length=1.0)
-        self._draw_image(image.picture(rescratched(self.scene, self.layers), self.width, self.spp, camera))
-        self.plotter.render()
+        return matrix
+
+    def _rendered(self, camera: Camera | None = None) -> np.ndarray:
+        """The image with the layers as they are shown, [h, w, 3] in [0, 1]; ``camera``: instead of the stage's."""
+        return image.picture(rescratched(self.scene, self.layers), self.width, self.spp, camera)
 
     def _pixels(self) -> tuple[int, int]:
         return self.scene.options.resolution or (640, 480)
@@ -215,7 +194,7 @@ class Window:
 
     def _draw_image(self, pixels: np.ndarray) -> None:
         self.plotter.subplot(0, 1)
-        image.add(self.plotter, pixels)
+        self.sheet = image.add(self.plotter, pixels)
         self._title(f"rendered, {self.spp} samples a pixel")
 
     def _draw_layers(self) -> None:

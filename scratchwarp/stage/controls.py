@@ -75,7 +75,7 @@ def material_controls(prim: Usd.Prim, time: Usd.TimeCode) -> Iterator[Control]:
     for name in layer_names(prim):
         for attribute in _attributes(prim, f"{_LAYER}{name}:"):
             yield control(attribute, "layer", f"{prim.GetPath()} {name}", time)
-        for target in prim.GetRelationship(f"{_LAYER}{name}:profile").GetForwardedTargets():
+        for target in _targets(prim, name):
             profile = prim.GetStage().GetPrimAtPath(target)
             if profile and not profile.IsInstanceProxy():
                 profiles[target] = profile
@@ -86,6 +86,12 @@ def material_controls(prim: Usd.Prim, time: Usd.TimeCode) -> Iterator[Control]:
         for attribute in _attributes(prim, "scratch:wave:"):
             yield control(attribute, "wave", str(prim.GetPath()), time)
     yield from _surface_controls(prim, time)
+
+
+def _targets(prim: Usd.Prim, name: str) -> list[Sdf.Path]:
+    """Paths of the profiles that a layer's relationships name."""
+    found = [prim.GetRelationship(f"{_LAYER}{name}:{which}") for which in ("profile", "profileEnd")]
+    return [target for relationship in found if relationship for target in relationship.GetForwardedTargets()]
 
 
 def light_controls(prim: Usd.Prim, time: Usd.TimeCode) -> Iterator[Control]:
