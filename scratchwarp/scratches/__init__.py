@@ -5,11 +5,13 @@ Files (device):
     worley_device      stretched cellular noise, Raymond 2016 Eq. 7
     lines_device       linear, concentric and spiral patterns of regular pitch
     curves_device      explicit curves found in a bounding volume hierarchy
+    grid_device        a uniform grid over strips in the plane, for footprint lookups
     variation_device   how wide and deep one scratch is, and its table
 Files (host):
     worley             threshold for a coverage, mean coverage for a threshold
     expand             a Layer as the author wrote it -> the sublayers that the kernel runs through
     curves             polylines -> segments and their hierarchy
+    grid               strips -> the grid that holds them, its cell size and memory
     variation          how the scratches of a layer differ, and the tables that stand for them
 
 A distribution is one device function with the signature of ``worley_device.worley`` and one line in ``KINDS``; explicit

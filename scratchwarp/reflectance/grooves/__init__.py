@@ -5,12 +5,13 @@ From NumPy: ``masking`` (what is seen and lit in a cross-section), ``pattern`` (
 millionth of the uv square, in any one unit of length, with the plane z = 0 and z up:
 
 - ``solid_device``: ``GrooveSet``, pieces and vertices (``Pattern(...).grooves``); whether a point is solid.
-- ``cast_device``: ``cast(grooves, ids, count, p, d, limit, anything)``, the first surface that a ray meets: distance,
-  normal, piece (-1 the ground). For bounces inside grooves, and shadow rays (``anything`` 1).
+- ``cast_device``: ``cast(grooves, ids, count, p, d, limit, anything, inside)``, the first surface that a ray meets:
+  distance, normal, piece (-1 the ground). For bounces, shadow rays (``anything`` 1) and rays within the solid.
 - ``edges_device``: where what is seen may change along a line.
 - ``footprint_device``: ``make_footprint_mean(Material, radiance)`` gives ``mean(grooves, ids, count, footprint, o, i,
   material, slices, chord)``; ``touches`` finds the pieces that a footprint needs, ``passes_through`` those that do not
   end there.
+- ``near_device``: ``find_near`` gathers those from the grid of ``scratches.grid`` (``Pattern(...).grid``).
 - ``facet_device``: ``FacetMaterial`` and ``facet_radiance``, what the NumPy entry point puts into it.
 - ``masking_device``: ``seen_fraction`` of one cross-section, alone or periodic.
 

@@ -1,4 +1,4 @@
-"""Rays against grooves: the first surface that a ray meets from outside.
+"""Rays against grooves: the first surface that a ray meets, from outside or from within the solid.
 
 Every facet, end wall and the ground is tried. A crossing counts when the solid lies behind it and air before it
 (``solid_device.is_solid`` a skin off the surface to both sides), whatever pieces overlap there: intersections, ends and
@@ -36,20 +36,23 @@ def is_surface(
 
 @wp.func
 def cast(
-    grooves: GrooveSet, ids: wp.array(dtype=int), count: int, p: wp.vec3d, d: wp.vec3d, limit: wp.float64, anything: int
+    grooves: GrooveSet, ids: wp.array(dtype=int), count: int, p: wp.vec3d, d: wp.vec3d, limit: wp.float64,
+    anything: int, inside: int,
 ) -> Crossing:  # fmt: skip
-    """The first surface that the ray ``p + t d``, 0 < t < ``limit``, meets from its outer side.
+    """The first surface that the ray ``p + t d``, 0 < t < ``limit``, meets.
 
-    ``anything`` 1: any surface will do (shadow rays). ``p`` must lie in the air, a skin off its own surface.
+    ``anything`` 1: any surface will do (shadow rays). ``inside`` 0: ``p`` lies in the air, a skin off its own surface;
+    1: in the solid. Normals point into the air always.
     """
     zero = wp.float64(0.0)
     hit = Crossing()
     hit.distance = wp.float64(wp.inf)
     hit.piece = -1
     best = limit
+    side = wp.float64(1 - 2 * inside)
     xy = flat(p)
     dxy = flat(d)
-    if d[2] < zero:
+    if side * d[2] < zero:
         t = -p[2] / d[2]
         n = wp.vec3d(zero, zero, wp.float64(1.0))
         if t > zero and t < best and is_surface(grooves, ids, count, p + t * d, n):
@@ -65,7 +68,7 @@ def cast(
             v = grooves.vertices[j]
             e = grooves.vertices[j + 1] - v
             facing = e[0] * d[2] - e[1] * dx
-            if facing < zero and (v[1] != zero or e[1] != zero) and not (anything == 1 and best == zero):
+            if side * facing < zero and (v[1] != zero or e[1] != zero) and not (anything == 1 and best == zero):
                 t = (e[0] * (v[1] - p[2]) - e[1] * (v[0] - x)) / facing
                 if t > zero and t < best:
                     w = (x + t * dx - v[0]) * e[0] + (p[2] + t * d[2] - v[1]) * e[1]
@@ -83,7 +86,7 @@ def cast(
                 # the wall that an opening cuts into what other pieces pile up
                 t = (v[0] - x) / dx
                 if t > zero and t < best and p[2] + t * d[2] > zero and p[2] + t * d[2] < grooves.top:
-                    n = -wp.sign(dx) * wp.vec3d(piece.across[0], piece.across[1], zero)
+                    n = -side * wp.sign(dx) * wp.vec3d(piece.across[0], piece.across[1], zero)
                     if is_surface(grooves, ids, count, p + t * d, n):
                         hit.distance = t
                         hit.normal = n
@@ -97,7 +100,7 @@ def cast(
             if wall == 1 and dm != zero:
                 t = (reach - wp.dot(m, r)) / dm
                 if t > zero and t < best and p[2] + t * d[2] > grooves.bottom and p[2] + t * d[2] < grooves.top:
-                    n = -wp.sign(dm) * wp.vec3d(m[0], m[1], zero)
+                    n = -side * wp.sign(dm) * wp.vec3d(m[0], m[1], zero)
                     if is_surface(grooves, ids, count, p + t * d, n):
                         hit.distance = t
                         hit.normal = n

@@ -14,6 +14,7 @@ from .facet_device import DIFFUSE, GLOSSY, MIRROR, FacetMaterial
 from .pattern import Pattern
 
 CHORDS = ("axis", "exact")
+ROOM = 64  # grooves near a footprint, before a larger list is made for it
 SUN = 0.004652  # [rad] angular radius of the light that a mirror facet sees: the sun's
 
 
@@ -108,10 +109,17 @@ def means(
     total = len(inputs[0])
     out = wp.zeros(total, dtype=wp.vec3d, device="cpu")
     found = wp.zeros(total, dtype=wp.float64, device="cpu")
-    near = wp.zeros((total, max(len(g.grooves.pieces), 1)), dtype=int, device="cpu")
-    given = [g.grooves, material, slices, CHORDS.index(chord), near, *inputs]
-    wp.launch(kernels.means, total, inputs=given, outputs=[out, found], device="cpu")
-    return out.numpy().reshape(*lead, 3), found.numpy().reshape(lead)
+    near = wp.zeros((total, min(max(len(g.table), 1), ROOM)), dtype=int, device="cpu")
+    given = [g.grooves, material, slices, CHORDS.index(chord), g.grid.data]
+    wp.launch(kernels.means, total, inputs=[*given, near, *inputs], outputs=[out, found], device="cpu")
+    result, share = out.numpy(), found.numpy()
+    for k in np.flatnonzero(share < 0.0):  # more grooves than there was room for
+        near = wp.zeros((1, len(g.table)), dtype=int, device="cpu")
+        one, one_share = wp.zeros(1, dtype=wp.vec3d, device="cpu"), wp.zeros(1, dtype=wp.float64, device="cpu")
+        rows = [x[int(k) : int(k) + 1] for x in inputs]
+        wp.launch(kernels.means, 1, inputs=[*given, near, *rows], outputs=[one, one_share], device="cpu")
+        result[k], share[k] = one.numpy()[0], one_share.numpy()[0]
+    return result.reshape(*lead, 3), share.reshape(lead)
 
 
 def radiance(

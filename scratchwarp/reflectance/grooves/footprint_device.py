@@ -123,12 +123,18 @@ def direction_of_lines(
         w = wp.vec2d(wp.cos(angle), wp.sin(angle))
         score = wp.float64(1.0)
         first = grooves.pieces[ids[0]].along
-        for a in range(count + 2):
+        for a in range(3 * count + 2):
             m = slope_o
-            if a == count + 1:
+            if a == 3 * count + 1:
                 m = slope_i
             if a < count:
                 m = grooves.pieces[ids[a]].along
+            elif a < 2 * count:
+                m = grooves.pieces[ids[a - count]].end0
+                m = wp.vec2d(-m[1], m[0])
+            elif a < 3 * count:
+                m = grooves.pieces[ids[a - 2 * count]].end1
+                m = wp.vec2d(-m[1], m[0])
             # the direction on the disk that runs along m: A^-1 m, up to its length
             t = wp.vec2d(m[0] * f.a2[1] - m[1] * f.a2[0], f.a1[0] * m[1] - f.a1[1] * m[0])
             length = wp.length(t)
@@ -188,7 +194,7 @@ def make_footprint_mean(Material: Any, radiance: Any) -> Any:
                     x = base + middle * step
                     top = wp.vec3d(x[0] + above * slope_o[0], x[1] + above * slope_o[1], above)
                     down = wp.vec3d(-slope_o[0], -slope_o[1], -one)
-                    hit = cast(grooves, ids, count, top, down, wp.float64(wp.inf), 0)
+                    hit = cast(grooves, ids, count, top, down, wp.float64(wp.inf), 0, 0)
                     if hit.distance < wp.float64(wp.inf):
                         result.found += weight
                         n = hit.normal
@@ -218,7 +224,7 @@ def make_footprint_mean(Material: Any, radiance: Any) -> Any:
                                         p = wp.vec3d(y[0], y[1], z) + wp.float64(2.0) * grooves.skin * n
                                         up = wp.vec3d(slope_i[0], slope_i[1], one)
                                         limit = grooves.top - z + grooves.skin
-                                        dark = cast(grooves, ids, count, p, up, limit, 1)
+                                        dark = cast(grooves, ids, count, p, up, limit, 1, 0)
                                         if dark.distance == wp.float64(wp.inf):
                                             lit += part
                                     if k < EVENTS:

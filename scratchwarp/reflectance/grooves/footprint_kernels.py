@@ -2,8 +2,10 @@
 
 import warp as wp
 
+from ...scratches.grid_device import Grid
 from .facet_device import FacetMaterial, facet_radiance
-from .footprint_device import Footprint, make_footprint_mean, slope_of, touches
+from .footprint_device import Footprint, make_footprint_mean, slope_of
+from .near_device import find_near
 from .solid_device import GrooveSet
 
 wp.set_module_options({"enable_backward": False})
@@ -17,6 +19,7 @@ def means(
     material: FacetMaterial,
     slices: int,
     chord: int,
+    grid: Grid,
     near: wp.array2d(dtype=int),
     center: wp.array(dtype=wp.vec2d),
     axis1: wp.array(dtype=wp.vec2d),
@@ -26,7 +29,7 @@ def means(
     out: wp.array(dtype=wp.vec3d),
     found: wp.array(dtype=wp.float64),
 ):
-    """Mean radiance and the share of each footprint in which a surface was found; ``near``: room for ids."""
+    """Mean radiance and the share of each footprint in which a surface was found; -1: ``near`` is too narrow."""
     t = wp.tid()
     f = Footprint()
     f.center = center[t]
@@ -39,10 +42,9 @@ def means(
         slope_i = wp.vec2d(wp.float64(0.0), wp.float64(0.0))
         if i[2] > wp.float64(1e-9):
             slope_i = slope_of(i)
-        for k in range(grooves.pieces.shape[0]):
-            if touches(grooves, grooves.pieces[k], f, slope_of(o), slope_i):
-                near[t, count] = k
-                count += 1
-    mean = footprint_mean(grooves, near[t], count, f, o, i, material, slices, chord)
-    out[t] = mean.radiance
-    found[t] = mean.found
+        count = find_near(grooves, grid, f, slope_of(o), slope_i, near[t], near.shape[1])
+    found[t] = wp.float64(-1.0)
+    if count <= near.shape[1]:
+        mean = footprint_mean(grooves, near[t], count, f, o, i, material, slices, chord)
+        out[t] = mean.radiance
+        found[t] = mean.found

@@ -2,12 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 import warp as wp
 from numpy.typing import ArrayLike
 
+from ...scratches.grid import StripGrid, build, strip_table
 from ..vectors import numbers
 from .section import closed_section, height_at, section_points
 from .solid_device import GrooveSet, Piece
@@ -84,7 +86,8 @@ class Pattern:
     are one path. Raises ValueError naming the argument.
 
     Attributes:
-        grooves: what the device takes (``solid_device.GrooveSet``); memory: its bytes.
+        grooves: what the device takes (``solid_device.GrooveSet``); table: its pieces as a NumPy table; memory: bytes
+            of both arrays. grid: where the pieces lie (``scratches.grid.StripGrid``, with bytes of its own).
     """
 
     def __init__(self, paths: Sequence[ArrayLike], profiles: Any, ends: str = "cap") -> None:
@@ -152,6 +155,7 @@ class Pattern:
         made.bottom, made.top = wp.float64(min(z.min(), 0.0)), wp.float64(max(z.max(), 0.0))
         made.skin = wp.float64(_SKIN * max(np.abs(z).max(), np.abs(x).max()))
         made.mixed = int(z.min() < 0.0 < z.max())
+        self.table = table
         self.memory = table.nbytes + corners.nbytes
         return made
 
@@ -178,10 +182,32 @@ class Pattern:
             for point, along, out in ((p[0], t[0], -t[0]), (p[-1], t[-1], t[-1])):
                 across = np.array([-along[1], along[0]])
                 number = first + len(pieces)
-                ends = {"end0": -out, "reach0": 0.0, "cap0": 0, "end1": out, "reach1": section[:, 0].max(), "cap1": 0}
+                low, high = section[:, 0].min(), section[:, 0].max()
+                rim = int(section[:, 1].min() < 0.0 < section[:, 1].max())  # goes round, and drops at its outer edges
+                ends = {"end0": -out, "reach0": 0.0, "cap0": 0, "end1": out, "reach1": high, "cap1": rim}
                 pieces.append({"origin": point, "along": out, "across": across, "partner": number + 1, **ends})
+                ends = {"end0": -across, "reach0": -low, "cap0": rim, "end1": across, "reach1": high, "cap1": rim}
                 pieces.append({"origin": point, "along": -across, "across": out, "partner": number, **ends})
         return pieces
+
+    def strips(self) -> np.ndarray:
+        """Oriented boxes about the pieces, in their order, for ``scratches.grid.build``."""
+        t = self.table
+        along, across = t["along"], t["across"]
+        u = np.empty((len(t), 2, 2))  # piece, end, side: where the end plane cuts the profile's edges
+        for end in range(2):
+            m = t[f"end{end}"]
+            for side, v in enumerate((t["low"][:, 0], t["high"][:, 0])):
+                u[:, end, side] = (t[f"reach{end}"] - np.sum(m * across, 1) * v) / np.sum(m * along, 1)
+        low, high = u[:, 0].min(1), np.maximum(u[:, 1].max(1), u[:, 0].min(1))
+        v0, v1 = t["low"][:, 0], t["high"][:, 0]
+        center = t["origin"] + along * (0.5 * (low + high))[:, None] + across * (0.5 * (v0 + v1))[:, None]
+        return strip_table(center, along, 0.5 * np.stack([high - low, v1 - v0], 1))
+
+    @cached_property
+    def grid(self) -> StripGrid:
+        """The uniform grid in which the pieces near a footprint are looked up."""
+        return build(self.strips())
 
     @staticmethod
     def _goes_on(section: np.ndarray) -> bool:

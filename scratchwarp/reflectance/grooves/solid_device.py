@@ -109,7 +109,9 @@ def digs_at(grooves: GrooveSet, k: int, xy: wp.vec2d, z: wp.float64) -> bool:
         result = is_dug(grooves.vertices, piece, x, z)
         if result and piece.partner >= 0:
             other = grooves.pieces[piece.partner]
-            result = is_dug(grooves.vertices, other, wp.dot(xy - other.origin, other.across), z)
+            y = wp.dot(xy - other.origin, other.across)
+            result = in_stretch(other, xy - other.origin, wp.float64(0.25) * grooves.skin)
+            result = result and is_dug(grooves.vertices, other, y, z)
     return result
 
 
@@ -131,7 +133,7 @@ def piles_at(grooves: GrooveSet, k: int, xy: wp.vec2d, z: wp.float64) -> bool:
             y = wp.dot(xy - other.origin, other.across)
             also = is_piled(grooves.vertices, other, y, z)
             if piece.low[1] < wp.float64(0.0):
-                result = (result or also) and y >= other.low[0] and y <= other.high[0]
+                result = (result or also) and in_stretch(other, xy - other.origin, wp.float64(0.25) * grooves.skin)
             else:
                 result = result and also
     return result
