@@ -23,6 +23,12 @@ OTHER = {
     "base.preview": 80,
     "lens": 20,
     "lights.closedForm": 300,
+    "scratches.ashikhminShirley": 150,
+    "scratches.normalMap": 400,
+    "base.stencils": 400,
+    "base.utia": 900,
+    "base.merl": 500,
+    "base.rgl": 1500,
 }
 
 

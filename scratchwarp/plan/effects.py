@@ -92,7 +92,8 @@ def _diffuse_scratches(f: Facts) -> Answer:
 def _response(name: str) -> Callable[[Facts], Answer]:
     def rule(f: Facts) -> Answer:
         found = [user for r in f.responses if r.name == name for user in r.users]
-        return _answer(found, f"reflect by {name} in place of a table", f"nothing reflects by {name}")
+        place = "the base" if RESPONSES[name].base else "a table"
+        return _answer(found, f"reflect by {name} in place of {place}", f"nothing reflects by {name}")
 
     return rule
 

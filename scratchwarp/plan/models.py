@@ -11,7 +11,7 @@ from typing import Any
 
 from .. import optics
 from ..reflectance import stencils
-from ..reflectance.responses import RESPONSES, facets, stencil_response
+from ..reflectance.responses import RESPONSES, facets, stencil_response, tabulated
 from ..scene import Layer, Measured, Scene
 from ..scratches.expand import Sublayer, sublayers
 from .choice import ResponsePlan, TablePlan
@@ -116,6 +116,9 @@ def base_responses(
 
 def measured_base(record: Measured) -> tuple[str, Any, tuple[float, float, float]]:
     """(response, its values, about its albedo) of a measured base."""
+    if record.source == "file":
+        name, file = tabulated.measured_file(record.file, record.format)
+        return name, file, tabulated.tabulated(file).albedo
     columns = zip(
         record.azimuth, record.width, record.a, record.b, record.kd, record.ks, record.alpha, record.color, strict=True
     )

@@ -33,6 +33,15 @@ def check_sizes(prim: Usd.Prim) -> Iterator[Problem]:
                 f"width of layer {layer!r} is 0, so the layer is invisible; author one above 0 or disable the layer",
                 "warning",
             )
+        model, image = layer_attribute(prim, layer, "model"), layer_attribute(prim, layer, "normalTexture")
+        if value(model) == "normalMap":
+            if not (value(image) and value(image).path):
+                yield Problem(
+                    model.GetPath(),
+                    f"model of layer {layer!r} is 'normalMap' but normalTexture names no image; author one, or set the "
+                    "model to 'auto'",
+                )
+            continue
         yield from check_unread(prim, layer, get["distribution"])
 
 

@@ -59,6 +59,11 @@ def called(source):
 # what only an effect that a plain scene lacks brings along
 SCRATCHES = ("scratches/worley_device.py", "scratches/lines_device.py", "scratches/layer_device.py")
 SCRATCHES += ("reflectance/profile_table_device.py", "kernels/layers_device.py")
+RESPONSES = [
+    f.relative_to(PACKAGE)
+    for folder in ("responses", "mdf", "stencils", "measured")
+    for f in (PACKAGE / "reflectance" / folder).glob("*_device.py")
+]
 MARKS = {
     "lens": "lens_point",
     "base.opacity": "opacity_at",
@@ -81,6 +86,10 @@ def test_the_plain_kernel_holds_no_scratch_code():
     of_scratches = device_functions(*SCRATCHES)
     assert {"table_value", "cone_direction", "worley", "concentric", "band_coverage", "gather"} <= of_scratches
     assert not of_scratches & without
+    responses = device_functions(*RESPONSES)
+    assert {"facets_eval", "normal_response_place", "stencil_eval", "lobe_sample", "half_pdf"} <= responses
+    assert not responses & without, responses & without
+    assert not responses & everything, responses & everything
     assert not {"cone_span", "span_rect", "span_dome", "span_cap"} & without
     assert len(of_scratches & everything) > 10 and "span_rect" in everything
     for effect, mark in MARKS.items():

@@ -5,8 +5,9 @@ import pytest
 from pxr import Sdf, Usd, UsdGeom, UsdShade
 
 import scratchwarp as sw
-from scratchwarp import image, usd_schemas
+from scratchwarp import image, measured, usd_schemas
 from scratchwarp.scene import StageError
+from scratchwarp.stage.validation import validate
 
 
 @pytest.fixture
@@ -45,9 +46,9 @@ def modes(prim, **values):
 def test_stencils_become_the_base(material):
     modes(material)
     scene = read(material)
-    measured = scene.materials[0].measured
-    assert measured.azimuth == pytest.approx([np.pi / 6]) and measured.background == pytest.approx(0.2)
-    np.testing.assert_allclose(measured.color, [(1, 0.5, 0.2)], rtol=1e-6)
+    record = scene.materials[0].measured
+    assert record.azimuth == pytest.approx([np.pi / 6]) and record.background == pytest.approx(0.2)
+    np.testing.assert_allclose(record.color, [(1, 0.5, 0.2)], rtol=1e-6)
     plan = sw.make_plan(scene)
     assert plan.on("base.stencils") and plan.effects["base.stencils"].prims == ("/Mat",) and plan.bases == (0,)
     assert not plan.on("base.preview") and plan.on("base.direction")
@@ -86,3 +87,22 @@ def test_normal_maps(material, tmp_path):
     bare = sw.make_plan(read(material))
     assert not bare.on("scratches.normalMap") and len(bare.tables) == 1
     assert any("normalTexture" in w for w in bare.warnings)
+    found = [f for f in validate(material.GetStage().GetRootLayer().realPath) if "normalTexture" in f.message]
+    assert [(f.severity, f.rule) for f in found] == [("error", "ScratchSizes")]
+
+
+def test_files_become_the_base(material, tmp_path):
+    directions = np.linspace(0.0, 1.0, 288)
+    measured.save_utia(tmp_path / "m.bin", 0.1 + 0.1 * np.repeat((directions[:, None] * directions)[..., None], 3, -1))
+    material.ApplyAPI("ScratchMeasuredAPI")
+    material.GetAttribute("scratch:measured:source").Set("file")
+    material.GetAttribute("scratch:measured:file").Set(Sdf.AssetPath("m.bin"))
+    plan = sw.make_plan(read(material))
+    assert plan.on("base.utia") and not plan.on("base.stencils") and plan.responses[0].users == ("/Mat",)
+    assert all(0.2 < c < 0.8 for c in plan.responses[0].albedo)
+    material.GetAttribute("scratch:measured:format").Set("merl")
+    with pytest.raises(ValueError, match=r"/Mat: .*m\.bin"):
+        sw.make_plan(read(material))
+    material.GetAttribute("scratch:measured:file").Set(Sdf.AssetPath("none.bin"))
+    scene = read(material)
+    assert scene.materials[0].measured is None and any("none.bin" in w for w in scene.warnings)

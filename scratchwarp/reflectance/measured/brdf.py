@@ -67,6 +67,10 @@ class Brdf:
         wp.launch(kernel, len(out), inputs=[struct, *inputs, int(reciprocal)], outputs=[out], device="cpu")
         return out.numpy().reshape(*lead, 3)
 
+    def device_record(self) -> Any:
+        """The struct that the device reads: ``GridBrdf``, ``MerlBrdf`` or ``RglBrdf``, on the CPU."""
+        return self._device[1]
+
     @cached_property
     def _device(self) -> tuple[Any, Any, Any]:
         return _PACKERS[self.format](self.tables)

@@ -48,6 +48,9 @@ RESPONSES: dict[str, Response] = {
     "ashikhminShirley": Response("scratches.ashikhminShirley", "facets"),
     "normalMap": Response("scratches.normalMap", "normal_response", placed=True),
     "stencils": Response("base.stencils", "stencil_response", placed=True, base=True),
+    "utia": Response("base.utia", "utia_response", placed=True, base=True),
+    "merl": Response("base.merl", "merl_response", placed=True, base=True),
+    "rgl": Response("base.rgl", "rgl_response", placed=True, base=True),
 }
 
 

@@ -8,7 +8,11 @@ BaseSample``. One that varies over the surface has a third, ``place(arrays, at, 
 import warp as wp
 
 from ..mdf.lobe_device import Lobe
+from ..measured.grid_device import GridBrdf
+from ..measured.merl_device import MerlBrdf
+from ..measured.rgl_device import RglBrdf
 from ..stencils.stencil_device import Stencil
+from .half_device import HalfTable
 
 wp.set_module_options({"enable_backward": False})
 
@@ -74,6 +78,30 @@ class NormalMapData:
 
 
 @wp.struct
+class UtiaData:
+    """A file of a UTIA measurement and how to draw from it."""
+
+    brdf: GridBrdf
+    half: HalfTable
+
+
+@wp.struct
+class MerlData:
+    """A file of a MERL measurement and how to draw from it."""
+
+    brdf: MerlBrdf
+    half: HalfTable
+
+
+@wp.struct
+class RglData:
+    """A file of an RGL measurement and how to draw from it."""
+
+    brdf: RglBrdf
+    half: HalfTable
+
+
+@wp.struct
 class ResponseArrays:
     """All responses: ``reflectances [row, node]``, then the data of each kind.
 
@@ -87,6 +115,9 @@ class ResponseArrays:
     maps: wp.array(dtype=NormalMapData)
     levels: wp.array(dtype=wp.vec3i)
     moments: wp.array(dtype=Moments)
+    utia: wp.array(dtype=UtiaData)
+    merl: wp.array(dtype=MerlData)
+    rgl: wp.array(dtype=RglData)
 
 
 @wp.func

@@ -98,10 +98,10 @@ def mode_value(mode: StencilMode, s: float, inverse_cosines: float) -> wp.vec3:
 
 
 @wp.func
-def allowed(stencil: Stencil, w: wp.vec3) -> float:
+def limit_at(limit: wp.array2d(dtype=float), w: wp.vec3) -> float:
     """The factor of a direction, between the nodes of ``limit``; directions half a turn apart have the same."""
-    rows = stencil.limit.shape[0]
-    columns = stencil.limit.shape[1]
+    rows = limit.shape[0]
+    columns = limit.shape[1]
     y = (1.0 - wp.sqrt(wp.clamp(w[2], 0.0, 1.0))) * float(rows - 1)
     row = wp.clamp(int(y), 0, rows - 2)
     fy = wp.clamp(y - float(row), 0.0, 1.0)
@@ -110,8 +110,8 @@ def allowed(stencil: Stencil, w: wp.vec3) -> float:
     column = wp.clamp(int(x), 0, columns - 1)
     fx = wp.clamp(x - float(column), 0.0, 1.0)
     after = wp.where(column == columns - 1, 0, column + 1)
-    above = (1.0 - fx) * stencil.limit[row, column] + fx * stencil.limit[row, after]
-    below = (1.0 - fx) * stencil.limit[row + 1, column] + fx * stencil.limit[row + 1, after]
+    above = (1.0 - fx) * limit[row, column] + fx * limit[row, after]
+    below = (1.0 - fx) * limit[row + 1, column] + fx * limit[row + 1, after]
     return (1.0 - fy) * above + fy * below
 
 
@@ -140,5 +140,5 @@ def stencil_eval(stencil: Stencil, wo: wp.vec3, wi: wp.vec3) -> wp.vec3:
         f = wp.max(highlight * (top.a + top.b * inverse), 1.0) * f
         f = wp.vec3(wp.min(f[0], _GREATEST), wp.min(f[1], _GREATEST), wp.min(f[2], _GREATEST))
         if stencil.conserve == 1:
-            f = wp.min(allowed(stencil, wo), allowed(stencil, wi)) * f
+            f = wp.min(limit_at(stencil.limit, wo), limit_at(stencil.limit, wi)) * f
     return f

