@@ -88,7 +88,7 @@ def test_normal_maps(material, tmp_path):
     assert not bare.on("scratches.normalMap") and len(bare.tables) == 1
     assert any("normalTexture" in w for w in bare.warnings)
     found = [f for f in validate(material.GetStage().GetRootLayer().realPath) if "normalTexture" in f.message]
-    assert [(f.severity, f.rule) for f in found] == [("error", "ScratchSizes")]
+    assert [(f.severity, f.rule) for f in found] == [("error", "scratchwarp:ScratchSizes")]
 
 
 def test_files_become_the_base(material, tmp_path):
