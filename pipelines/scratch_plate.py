@@ -1,16 +1,19 @@
-"""The stage of ``scratch_map``: a metal plate with a normal map, for any renderer that knows UsdPreviewSurface."""
+"""The stage of ``scratch_map``: a metal plate with a normal map, for any renderer that knows UsdPreviewSurface; in
+scratchwarp the facets follow the map (a layer of model normalMap)."""
 
 import os
 from pathlib import Path
 
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdShade, Vt
 
+from scratchwarp import usd_schemas
 from scratchwarp.whole import whole
 
 
 def plate(path: Path, texture: Path, repeat: float = 1.0) -> Path:
     """Write a stage: a square metre of metal whose UsdPreviewSurface reads the normal map ``texture``, ``repeat`` times
     each way. OSError where it cannot be written."""
+    usd_schemas.register()
     stage = Usd.Stage.CreateInMemory()
     UsdGeom.SetStageMetersPerUnit(stage, 1.0)
     UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.y)
@@ -39,6 +42,10 @@ def plate(path: Path, texture: Path, repeat: float = 1.0) -> Path:
         map_node.CreateOutput("rgb", Sdf.ValueTypeNames.Float3)
     )
     material.CreateSurfaceOutput().ConnectToSource(surface.CreateOutput("surface", Sdf.ValueTypeNames.Token))
+
+    material.GetPrim().ApplyAPI("ScratchLayerAPI", "map")
+    for key, value in (("model", "normalMap"), ("normalTexture", Sdf.AssetPath(file))):
+        material.GetPrim().GetAttribute(f"scratch:layer:map:{key}").Set(value)
 
     mesh = UsdGeom.Mesh.Define(stage, "/Scratched/plate")
     corners = [(-0.5, -0.5, 0.0), (0.5, -0.5, 0.0), (0.5, 0.5, 0.0), (-0.5, 0.5, 0.0)]

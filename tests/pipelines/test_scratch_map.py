@@ -64,8 +64,10 @@ def test_the_stage(tmp_path):
     assert tuple(texture.GetInput("scale").Get())[:3] == (2, 2, 2)
     scene = sw.read(stage_path)
     assert not [w for w in scene.warnings if "normal" in w]
+    material = scene.materials[scene.instances[0].materials[0]]
+    assert material.layers[0].model == "normalMap" and material.layers[0].normal_map.repeats == (1.0, 1.0)
     wanted = mdf.scratch_map((64, 32), direction=np.radians(30.0))
-    found = scene.textures[scene.materials[scene.instances[0].materials[0]].surface.normal.texture].pixels
+    found = scene.textures[material.surface.normal.texture].pixels
     np.testing.assert_allclose(2.0 * np.asarray(found)[..., :3] - 1.0, wanted, atol=3e-5)
 
 
