@@ -6,7 +6,8 @@ Files:
     registry        MODELS: record class -> kind; a new light is its two files and a line there
     pack            pack(scene) -> PackedLights
     query           sample, hit, span, irradiance of one light over NumPy arrays; query_kernels: their kernels
-    arcs_device     where exactly a scratch cone crosses a light; quartic_device: roots; lit_device: what lies there
+    arcs_device     where exactly a scratch cone crosses a light (cylinder_arcs_device, too); quartic_device: roots
+    lit_device      what lies along a direction that meets the light
     levels          smaller copies of a dome's image
     cap_device      scratch-cone intervals of caps (sphere, distant)
     polygon_device  solid angles and scratch-cone intervals of flat outlines (rect, disk, cylinder, mesh)

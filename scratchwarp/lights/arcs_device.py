@@ -16,7 +16,7 @@ from scratchwarp.lights.quartic_device import quartic_at, quartic_roots, vec_qua
 wp.set_module_options({"enable_backward": False})
 
 MOST_ARCS = 5  # four entries of a convex quadrilateral, one of them split by the horizon
-MOST_CUTS = 10
+MOST_CUTS = 16  # of a cylinder: two planes, the middle of each end and its circle
 vec_arcs: Any = wp.types.vector(length=MOST_ARCS, dtype=wp.float32)
 vec_cuts: Any = wp.types.vector(length=MOST_CUTS, dtype=wp.float32)
 
@@ -226,6 +226,32 @@ def squared(a: wp.vec3d) -> vec_quartic:
 
 
 @wp.func
+def ellipse_quartic(
+    center: wp.vec3,
+    axis: wp.vec3,
+    rx: wp.vec3,
+    ry: wp.vec3,
+    u: wp.vec3,
+    v: wp.vec3,
+    n: wp.vec3,
+    sin_theta: float,
+) -> vec_quartic:
+    """Negative where w or -w meets the ellipse {center + o: (rx.o)^2 + (ry.o)^2 <= 1, axis.o = 0} seen from the origin:
+    A^2 + B^2 - D^2 with A = (h rx + (rx.center) axis).w, B alike, D = -axis.w, h = -center.axis."""
+    p = wp.vec3d(wp.float64(center[0]), wp.float64(center[1]), wp.float64(center[2]))
+    z = wp.vec3d(wp.float64(axis[0]), wp.float64(axis[1]), wp.float64(axis[2]))
+    x = wp.vec3d(wp.float64(rx[0]), wp.float64(rx[1]), wp.float64(rx[2]))
+    y = wp.vec3d(wp.float64(ry[0]), wp.float64(ry[1]), wp.float64(ry[2]))
+    height = -wp.dot(p, z)
+    sine = wp.float64(sin_theta)
+    cosine = wp.sqrt(wp.max((wp.float64(1.0) - sine) * (wp.float64(1.0) + sine), wp.float64(0.0)))
+    a = along_t(height * x + wp.dot(x, p) * z, u, v, n, sine, cosine)
+    b = along_t(height * y + wp.dot(y, p) * z, u, v, n, sine, cosine)
+    d = along_t(-z, u, v, n, sine, cosine)
+    return squared(a) + squared(b) - squared(d)
+
+
+@wp.func
 def arcs_ellipse(
     center: wp.vec3,
     axis: wp.vec3,
@@ -238,23 +264,12 @@ def arcs_ellipse(
     lo: float,
     hi: float,
 ) -> Arcs:
-    """Where [lo, hi] of the cone meets the ellipse {center + o: (rx.o)^2 + (ry.o)^2 <= 1, axis.o = 0} seen from the
-    origin, which lies on the side that ``axis`` points to: A^2 + B^2 < D^2, D > 0 with A = (h rx + (rx.center) axis).w,
-    B alike, D = -axis.w, h the height over the plane."""
-    p = wp.vec3d(wp.float64(center[0]), wp.float64(center[1]), wp.float64(center[2]))
-    z = wp.vec3d(wp.float64(axis[0]), wp.float64(axis[1]), wp.float64(axis[2]))
-    x = wp.vec3d(wp.float64(rx[0]), wp.float64(rx[1]), wp.float64(rx[2]))
-    y = wp.vec3d(wp.float64(ry[0]), wp.float64(ry[1]), wp.float64(ry[2]))
-    height = -wp.dot(p, z)
-    sine = wp.float64(sin_theta)
-    cosine = wp.sqrt(wp.max((wp.float64(1.0) - sine) * (wp.float64(1.0) + sine), wp.float64(0.0)))
-    a = along_t(height * x + wp.dot(x, p) * z, u, v, n, sine, cosine)
-    b = along_t(height * y + wp.dot(y, p) * z, u, v, n, sine, cosine)
-    d = along_t(-z, u, v, n, sine, cosine)
-    q = squared(a) + squared(b) - squared(d)
+    """Where [lo, hi] of the cone meets an ellipse that faces the origin; arguments as of ``ellipse_quartic``."""
+    q = ellipse_quartic(center, axis, rx, ry, u, v, n, sin_theta)
     left = wp.tan(wp.float64(0.5) * wp.float64(lo))
     last = wp.tan(wp.float64(0.5) * wp.float64(hi))
     roots = quartic_roots(q, left, last)
+    s = wp.sqrt(wp.max((1.0 - sin_theta) * (1.0 + sin_theta), 0.0))
     r = Arcs()
     for k in range(5):
         right = last
@@ -262,11 +277,28 @@ def arcs_ellipse(
             right = wp.min(roots[k], last)
         if right > left:
             t = wp.float64(0.5) * (left + right)
-            descent = d[0] + t * (d[1] + t * d[2])
-            if quartic_at(q, 0, t) < wp.float64(0.0) and descent > wp.float64(0.0):
-                r = add_arc(r, float(wp.float64(2.0) * wp.atan(left)), float(wp.float64(2.0) * wp.atan(right)))
+            if quartic_at(q, 0, t) < wp.float64(0.0):
+                phi = float(wp.float64(2.0) * wp.atan(t))
+                w = sin_theta * u + s * (wp.sin(phi) * v + wp.cos(phi) * n)
+                if wp.dot(w, axis) < 0.0:
+                    r = add_arc(r, float(wp.float64(2.0) * wp.atan(left)), float(wp.float64(2.0) * wp.atan(right)))
             left = right
     return r
+
+
+@wp.func
+def misses_ball(p: wp.vec3, radius: float, u: wp.vec3, sin_theta: float) -> bool:
+    """Whether the cone passes a ball about ``p`` seen from the origin, and so all that lies in it."""
+    d2 = wp.dot(p, p)
+    result = False
+    if d2 > radius * radius:
+        d = wp.sqrt(d2)
+        g = wp.clamp(wp.dot(p, u) / d, -1.0, 1.0)
+        # of the angle between the ball's middle and the cone
+        across = wp.sqrt(1.0 - g * g)
+        cosine = wp.sqrt(wp.max((1.0 - sin_theta) * (1.0 + sin_theta), 0.0))
+        result = across * cosine + g * sin_theta < 0.0 or wp.abs(g * cosine - across * sin_theta) * d > 1.0001 * radius
+    return result
 
 
 @wp.func
@@ -298,7 +330,8 @@ def arcs_rect(
     """Of a rect light from its lit side."""
     r = Arcs()
     p = light.center - x
-    if wp.dot(p, light.ez) < -1.0e-12 and light.size > 0.0:
+    reach = wp.length(light.ex) + wp.length(light.ey)
+    if wp.dot(p, light.ez) < -1.0e-12 and light.size > 0.0 and not misses_ball(p, reach, u, sin_theta):
         r = arcs_quad(p, light.ex, light.ey, u, v, n, sin_theta, lo, hi)
     return r
 
@@ -310,7 +343,8 @@ def arcs_disk(
     """Of a disk light from its lit side."""
     r = Arcs()
     p = light.center - x
-    if wp.dot(p, light.ez) < -1.0e-12 and light.size > 0.0:
+    reach = wp.max(wp.length(light.ex), wp.length(light.ey))
+    if wp.dot(p, light.ez) < -1.0e-12 and light.size > 0.0 and not misses_ball(p, reach, u, sin_theta):
         r = arcs_ellipse(p, light.ez, light.rx, light.ry, u, v, n, sin_theta, lo, hi)
     return r
 

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from scratchwarp.lights import cylinder_device as device
+from scratchwarp.lights.cylinder_arcs_device import arcs_cylinder, lit_cylinder
 from scratchwarp.lights.model import LightModel, Packer, unit
 from scratchwarp.scene.light import CylinderLight
 
@@ -23,5 +24,12 @@ def _pack(light: CylinderLight, packer: Packer) -> Mapping[str, Any]:
 
 
 CYLINDER = LightModel(
-    "cylinder", CylinderLight, _pack, device.sample_cylinder, device.hit_cylinder, device.span_cylinder
+    "cylinder",
+    CylinderLight,
+    _pack,
+    device.sample_cylinder,
+    device.hit_cylinder,
+    device.span_cylinder,
+    arcs=arcs_cylinder,
+    lit=lit_cylinder,
 )
