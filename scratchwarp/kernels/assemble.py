@@ -100,6 +100,8 @@ def _glint_fields(plan: EffectPlan) -> dict[str, Any]:
     return {
         "glints": True,
         "glint_segments": plan.on("diffraction.segments"),
+        "glint_bands": plan.on("diffraction.bands"),
+        "glint_gratings": plan.on("diffraction.bands") and plan.on("diffraction.coherent"),
         "glint_areas": plan.on("diffraction.areaLights"),
         "glint_method": "paper" if plan.on("diffraction.paperLights") else method,
     }

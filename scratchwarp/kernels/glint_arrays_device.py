@@ -11,7 +11,7 @@ wp.set_module_options({"enable_backward": False})
 @wp.struct
 class WaveMaterial:
     """A material whose scratches diffract. ``first``, ``count``: its wavelengths, the longest last; ``bands``: its
-    regular layers in ``GlintArrays.layers``, from ``first_band``."""
+    regular layers in ``GlintArrays.bands``, from ``first_band``."""
 
     sigma: float  # coherence radius [um]
     first: int
@@ -43,6 +43,33 @@ class WaveLayer:
 
 
 @wp.struct
+class BandData:
+    """A regular pattern; lengths in pattern units as in ``scratches.layer_device``. ``layer``: in
+    ``GlintArrays.layers``; ``coherent``: its lines interfere; ``depth_um``: 1 where the depth is in micrometres."""
+
+    kind: int
+    layer: int
+    coherent: int
+    uv_space: int
+    cos_a: float
+    sin_a: float
+    width: wp.float64
+    depth: float
+    pitch: wp.float64
+    offset: wp.float64  # pitches
+    center: wp.vec2d
+
+
+@wp.struct
+class Spectrum:
+    """Linear Rec.709 a micrometre of wavelength, from ``first`` every ``step`` [um]; it integrates to (1, 1, 1)."""
+
+    first: float
+    step: float
+    colors: wp.array(dtype=wp.vec3)
+
+
+@wp.struct
 class GlintArrays:
     """All of it. ``material``: material -> entry of ``waves``, or -1; ``colors``: linear Rec.709 of each wavelength,
     those of a material add up to 1; ``reflect[row, cosine]``, ``spectral[row, cosine, wavelength]``: reflectance at
@@ -59,6 +86,8 @@ class GlintArrays:
     segments: wp.array(dtype=Segment)
     starts: wp.array(dtype=int)
     bvh: wp.uint64
+    bands: wp.array(dtype=BandData)
+    spectrum: Spectrum
 
 
 @wp.struct
@@ -81,6 +110,7 @@ class Strand:
     width: float
     depth: float
     layer: int
+    pitch: float  # [um] of a grating, 0 for a scratch by itself
 
 
 @wp.struct

@@ -19,7 +19,7 @@ from ..reflectance.diffraction.response_device import along_variance
 from .direct_device import models_of
 from .geometry_device import Geometry
 from .glint_arrays_device import GlintArrays, Strand, WaveLayer, WaveMaterial
-from .glint_sums_device import REACH, View, as_xi2, cosine_of, make_glint_sums, point_light, slice_at
+from .glint_sums_device import REACH, View, as_xi2, cosine_of, make_glint_sums, slice_at
 from .key import KernelKey
 from .lobe_device import largest
 from .material_device import MaterialArrays
@@ -35,7 +35,7 @@ def make_strand_light(key: KernelKey, transmittance):
     """Device function: the light that one scratch sends to the viewer, compiled for the lights of ``key``."""
     models = models_of(key)
     names = [model.name for model in models]
-    xi1_slices, radiance_of = make_glint_sums(key.glint_method)
+    xi1_slices, radiance_of, radiance_from = make_glint_sums(key.glint_method, key.glint_gratings)
 
     @wp.func
     def cap_light(
@@ -305,7 +305,7 @@ def make_strand_light(key: KernelKey, transmittance):
                             part = wp.vec3(0.0, 0.0, 0.0)
                             if light.delta == 1:
                                 if i[2] > 0.0:
-                                    part = point_light(a, wave, layer, strand, view, i)
+                                    part = radiance_from(a, wave, layer, strand, view, i)
                             else:
                                 if wp.static(key.glint_areas and names[j] in ("distant", "sphere")):
                                     part = cap_light(a, wave, layer, strand, view, i, half_angle)

@@ -10,6 +10,7 @@ from ..reflectance.diffraction.response_device import (
     sinc2,
 )
 from .glint_arrays_device import GlintArrays, Strand, WaveLayer, WaveMaterial, reflectance_at, reflectance_color
+from .glint_bands_device import order_interval, order_point
 
 _vec8 = wp.types.vector(length=8, dtype=float)
 # Gauss-Legendre over [0, 1].
@@ -117,8 +118,11 @@ def point_light(
     return total
 
 
-def make_glint_sums(method: str):
-    """(slices of a light, radiance under them): "slices", "closed-form" or "paper"."""
+def make_glint_sums(method: str, gratings: bool):
+    """(slices of a light, radiance under them, radiance under a direction).
+
+    ``method``: "slices", "closed-form" or "paper"; ``gratings``: whether any pattern shows orders.
+    """
     single = method != "slices"
     across = across_integral_paper if method == "paper" else across_integral
 
@@ -163,6 +167,24 @@ def make_glint_sums(method: str):
         """Sum over wavelengths and slices. ``places``: (xi_1, weight, cosine of the half angle); ``cuts``: intervals
         of xi_2."""
         total = wp.vec3(0.0, 0.0, 0.0)
+        if wp.static(gratings):
+            if strand.pitch > 0.0:
+                for i in range(count):
+                    c = cuts[i]
+                    for half in range(2):
+                        low = c[2 * half]
+                        high = c[2 * half + 1]
+                        if high > low:
+                            # orders on either side of the mirror direction are alike
+                            total += order_interval(
+                                a, wave, layer, strand, view.spread, whole, places[i], wp.max(low, 0.0), high
+                            )
+                            total += order_interval(
+                                a, wave, layer, strand, view.spread, whole, places[i], wp.max(-high, 0.0), -low
+                            )
+                if layer.per_wavelength == 0:
+                    total = wp.cw_mul(total, reflectance_color(a, layer.reflect, places[count / 2][2]))
+                return total
         for k in range(wave.count):
             wavelength = a.wavelengths[wave.first + k]
             ratio = strand.width / wavelength
@@ -186,4 +208,19 @@ def make_glint_sums(method: str):
             total = wp.cw_mul(total, reflectance_color(a, layer.reflect, places[count / 2][2]))
         return total
 
-    return xi1_slices, radiance_of
+    @wp.func
+    def radiance_from(
+        a: GlintArrays, wave: WaveMaterial, layer: WaveLayer, strand: Strand, view: View, i: wp.vec3
+    ) -> wp.vec3:
+        """Under irradiance 1 across ``i``."""
+        if wp.static(gratings):
+            if strand.pitch > 0.0:
+                cosine = wp.sqrt(wp.max(0.5 + 0.5 * wp.dot(i, view.o), 0.0))
+                x = i[0] + view.o[0] + view.shift
+                total = i[2] * order_point(a, wave, layer, strand, view.spread, x, i[1] + view.o[1], cosine)
+                if layer.per_wavelength == 0:
+                    total = wp.cw_mul(total, reflectance_color(a, layer.reflect, cosine))
+                return total
+        return point_light(a, wave, layer, strand, view, i)
+
+    return xi1_slices, radiance_of, radiance_from

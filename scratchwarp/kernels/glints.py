@@ -1,19 +1,21 @@
 """Layers that diffract -> device arrays: scratches cut to the triangles, wavelengths, reflectances."""
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import warp as wp
 
+from ..optics import spectra
 from ..plan import EffectPlan
-from ..plan.waves import REGULAR, WaveLayerPlan, reflectances
+from ..plan.waves import REGULAR, WaveLayerPlan, is_grating, reflectances
 from ..reflectance.diffraction.color import spectral_samples
 from ..scene import Scene, Wave
 from ..scratches.generate import random_scratches
 from ..scratches.segments import SegmentSet, Stroke, build
 from .geometry import PackedGeometry
-from .glint_arrays_device import GlintArrays, WaveLayer, WaveMaterial
+from .glint_arrays_device import BandData, GlintArrays, Spectrum, WaveLayer, WaveMaterial
 from .key import KernelKey
 
 COSINES = 33
@@ -75,6 +77,43 @@ def _strokes(
     return made
 
 
+def _bands(plan: EffectPlan, numbers: dict[tuple[int, int], int]) -> list[tuple[int, Any]]:
+    """(material, record) of every regular pattern."""
+    made: list[tuple[int, Any]] = []
+    for (m, k), number in numbers.items():
+        wave = plan.waves[m]
+        assert wave is not None
+        layer = wave.layers[k].layer
+        if layer.distribution not in REGULAR or layer.pitch <= 0.0:
+            continue
+        sets = [(layer.angle, layer.offset[1])]
+        if layer.distribution == "crosshatch":
+            sets.append((layer.angle + layer.cross_angle, layer.offset[0]))
+        for angle, offset in sets:
+            band: Any = BandData()
+            band.kind = {"concentric": 1, "spiral": 2}.get(layer.distribution, 0)
+            band.layer, band.uv_space = number, int(layer.space == "uv")
+            band.coherent = int(is_grating(wave.wave, layer))
+            band.cos_a, band.sin_a = math.cos(angle), math.sin(angle)
+            band.width, band.depth, band.pitch = layer.width, layer.depth, layer.pitch
+            band.offset, band.center = offset, wp.vec2d(*layer.center)
+            made.append((m, band))
+    return made
+
+
+def _spectrum(device: str) -> Spectrum:
+    """The eye by wavelength, every nanometre over what it sees."""
+    at = np.arange(380.0, 781.0)
+    density = spectra.cmf(at)
+    density /= density[1:-1].sum(0) + 0.5 * (density[0] + density[-1])
+    white = spectra.rgb_to_xyz(np.ones(3))
+    s: Any = Spectrum()
+    s.first, s.step = 0.38, 1e-3
+    colors = spectra.xyz_to_rgb(spectra.adapt(density, np.ones(3), white)) * 1e3
+    s.colors = wp.array(colors.astype(np.float32), dtype=wp.vec3, device=device)
+    return s
+
+
 def _shares(plan: WaveLayerPlan, deepest: float, wave: Wave) -> np.ndarray:
     """Linear Rec.709 of the mean |D|^2 of depths from 0 to ``deepest`` [um], shape [SHARES, 3]."""
     at, weights = wavelengths_of(wave)
@@ -109,6 +148,11 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
         arrays.segments, arrays.starts = segments.segments, segments.starts
         arrays.bvh = segments.bvh.id if segments.bvh is not None else 0
     which = np.full(max(len(scene.materials), 1), -1, np.int32)
+    bands = _bands(plan, numbers) if key.glint_bands else []
+    if bands:
+        arrays.bands = wp.array([b for _, b in bands], dtype=BandData, device=device)
+        if key.glint_gratings:
+            arrays.spectrum = _spectrum(device)
     waves: list[Any] = []
     lams: list[np.ndarray] = []
     colors: list[np.ndarray] = []
@@ -118,6 +162,8 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
         at, weights = wavelengths_of(w.wave)
         record.sigma, record.first, record.count = w.wave.coherence_radius, sum(len(x) for x in lams), len(at)
         record.longest = float(at[-1])
+        record.bands = sum(material == m for material, _ in bands)
+        record.first_band = next((n for n, (material, _) in enumerate(bands) if material == m), 0)
         waves.append(record)
         lams.append(at)
         colors.append(weights)
@@ -133,6 +179,8 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
         row: Any = WaveLayer()
         row.wave, row.reflect, row.per_wavelength = int(which[m]), number, int(own.index is not None)
         row.roughness = w.wave.roughness
+        if own.layer.distribution in REGULAR:
+            row.depth_spread = own.layer.depth * own.layer.depth_variation / math.sqrt(3.0)
         deepest = _layer_deepest(own, scene, segments, number)
         row.share, row.share_count, row.share_step = len(shares) * SHARES, SHARES, deepest / (SHARES - 1)
         shares.append(_shares(own, deepest, w.wave))

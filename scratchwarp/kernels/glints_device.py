@@ -13,6 +13,7 @@ from ..reflectance.base_device import CONDUCTOR, DIELECTRIC, SCHLICK, Base
 from ..scratches.segments_device import Plane, plane_of
 from .geometry_device import Geometry, Surface
 from .glint_arrays_device import GlintArrays, Glints, Strand, depth_share
+from .glint_bands_device import band_strand
 from .glint_lights_device import make_strand_light
 from .key import KernelKey
 from .lobe_device import luminance
@@ -229,6 +230,37 @@ def make_glints(key: KernelKey, transmittance):
                             )
                             total += wp.vec3(lit[0], lit[1], lit[2])
                             r.rays += lit[3]
+        if wp.static(key.glint_bands):
+            for n in range(wave.first_band, wave.first_band + wave.bands):
+                band = a.bands[n]
+                strand = band_strand(band, g, s, frame.n, step_x, step_y, 1.0e-6 * wave.sigma)
+                if strand.length > 0.0:
+                    layer = a.layers[strand.layer]
+                    area = wp.min(strand.length * strand.width, 1.0)
+                    if strand.pitch > 0.0:
+                        # order 0 is the base's
+                        area *= 1.0 - area
+                    share = area * depth_share(a, layer, strand.depth)
+                    covered += share
+                    bare = uncovered(bare, share)
+                    lit = strand_light(
+                        a,
+                        strand,
+                        lights,
+                        g,
+                        arrays,
+                        p,
+                        s.ng,
+                        s.instance,
+                        wo,
+                        closeness,
+                        known,
+                        index,
+                        dimension,
+                        seed,
+                    )
+                    total += wp.vec3(lit[0], lit[1], lit[2])
+                    r.rays += lit[3]
         r.left = bare
         r.radiance = wp.cw_mul(total, crowding(bare, covered))
         return r

@@ -21,7 +21,8 @@ class KernelKey:
         light_multipliers: some light's diffuse or specular multiplier is not 1.
         mesh_lights: some geometry is a light. path: indirect bounces.
         responses: kinds of response over solid angle, of scratches or bases.
-        glints: some scratches diffract. glint_segments: explicit ones; glint_bands: kinds of regular patterns.
+        glints: some scratches diffract. glint_segments: explicit ones; glint_bands: regular patterns.
+        glint_gratings: some of them show orders.
         glint_areas: under lights with an extent. glint_method: slices, closed-form or paper.
         closed_form: light along the cones of scratches is integrated; cone_taps: some of those lights are not even.
         sample_lights, sample_cones: scratches look for the other lights by drawing from these, from their own cone.
@@ -53,7 +54,8 @@ class KernelKey:
     responses: tuple[str, ...] = ()
     glints: bool = False
     glint_segments: bool = False
-    glint_bands: tuple[str, ...] = ()
+    glint_bands: bool = False
+    glint_gratings: bool = False
     glint_areas: bool = False
     glint_method: str = "slices"
     closed_form: bool = False

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 from ..scene import Layer
-from .waves import REGULAR
+from .waves import REGULAR, is_grating
 
 Answer = tuple[bool, str, tuple[str, ...]]
 
@@ -35,6 +35,12 @@ def _bands(f: Any) -> Answer:
     return _answer(found, "regular patterns, summed in closed form", "no regular pattern diffracts")
 
 
+def _coherent(f: Any) -> Answer:
+    waves = [own for own in f.waves if own is not None]
+    found = [p.layer.label for own in waves for p in own.layers if is_grating(own.wave, p.layer)]
+    return _answer(found, "patterns closer than light is coherent show orders", "no grating is to be summed coherently")
+
+
 def _areas(f: Any) -> Answer:
     if not _layers(f):
         return False, "nothing diffracts", ()
@@ -50,6 +56,7 @@ WAVE_EFFECTS: dict[str, Callable[[Any], Answer]] = {
     "diffraction": _diffraction,
     "diffraction.segments": _segments,
     "diffraction.bands": _bands,
+    "diffraction.coherent": _coherent,
     "diffraction.areaLights": _areas,
     "diffraction.closedForm": _never("lights in 8 slices; on: the slice xi_1 = 0 alone (Velinov 2018 Eq. 27)"),
     "diffraction.paperLights": _never("exact sine integral; on: Velinov 2018 Eq. 27 with Eq. 29"),

@@ -37,6 +37,13 @@ def diffracts(material: Material, layer: Layer) -> bool:
     return material.wave is not None and layer.model in ("auto", "diffraction")
 
 
+def is_grating(wave: Wave, layer: Layer) -> bool:
+    """Whether a regular pattern is summed coherently: asked for, and closer than the light on it is coherent (lines
+    further apart leave fringes that no light of finite size shows). A pitch in uv is taken for close."""
+    close = layer.space == "uv" or layer.pitch <= wave.coherence_radius
+    return wave.summation == "coherent" and layer.distribution in REGULAR and close
+
+
 def wave_index(material: Material, layer: Layer) -> Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]] | None:
     """The refractive index by wavelength: that of ScratchWaveAPI, else of the measured metal that the scratch is of."""
     wave = material.wave

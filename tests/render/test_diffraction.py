@@ -31,7 +31,8 @@ LENGTH = 0.004
 """Of the one scratch [m]."""
 # one kernel for all tests: its code does not depend on which of these lights are there
 LIGHTS = {f"lights.{name}": True for name in ("distant", "sphere", "rect", "dome")}
-COMPILED = {**LIGHTS, "diffraction.areaLights": True, "shadows": True}
+COMPILED = {**LIGHTS, "shadows": True}
+COMPILED |= {f"diffraction.{name}": True for name in ("areaLights", "segments", "bands", "coherent")}
 
 
 def black():
@@ -124,7 +125,7 @@ def test_area_lights_against_the_library(kind, offset):
     assert flux(film, 0.001) @ LUMINANCE == pytest.approx(expected @ LUMINANCE, rel=0.03, abs=0.0)
 
 
-@pytest.mark.parametrize("coverage", [0.05, 0.5, 0.9])
+@pytest.mark.parametrize("coverage", [0.05, 0.8])
 def test_furnace(coverage):
     """Scratches on a mirror under an even white dome: base and scratches return at most what arrives, and nearly all
     of it but what diffracts below the horizon (lobe fraction of 3 um scratches: 0.97)."""
@@ -174,3 +175,59 @@ def test_directions_build_no_area_light_code():
     assert plan.effects["diffraction.areaLights"].reason == "every light is a point or a direction"
     dome = replace(world, lights=(DomeLight(path="/d", radiance=np.ones(3)),))
     assert sw.make_plan(dome, sw.Settings(width=4, height=4)).on("diffraction.areaLights")
+
+
+def grating(pitch, coherent=True, **fields):
+    """Parallel scratches along x at a pitch [um]."""
+    wave = Wave(coherence_radius=SIGMA, summation="coherent" if coherent else "incoherent")
+    return waves(distribution="linear", pitch=pitch, curves=(), wave=wave, **fields)
+
+
+def test_grating_against_the_library():
+    """145 scratches 5 um apart, their field added up and squared at every quarter of a nanometre, against the orders
+    of the renderer. The Gaussian of an order is 5 nm wide at most and the eye nearly straight over it: 1 %."""
+    pitch, width, depth, xi2 = 5.0, 2.0, 0.4, 0.22
+    omega_o, omega_i = np.array([0, 0, 1.0]), np.array([0.0, xi2, np.sqrt(1 - xi2**2)])
+    light = DistantLight(path="/l", radiance=np.full(3, 2.0), direction=-omega_i)
+    film = render(grating(pitch, width=width, depth=depth), light, (), size=2)
+    at = np.arange(380.25, 780.0, 0.25)
+    lines = [diffraction.Scratch(width, depth, 0.0, pitch * (i - 72), SIGMA) for i in range(145)]
+    f = diffraction.brdf_coherent(omega_i, omega_o, lines, at, base=False)
+    _, weights = spectral_samples(at)
+    expected = 2.0 * omega_i[2] * (f @ weights)
+    # gamut mapping keeps the luminance
+    assert film["scratches"].mean((0, 1)) @ LUMINANCE == pytest.approx(expected @ LUMINANCE, rel=1e-2)
+
+
+def test_rainbow_of_a_compact_disc():
+    """A 1.6 um grating seen from straight above under a point light: along the line xi_1 = 0 of the picture the first
+    order shows lambda = pitch xi_2. Measured from the picture: where the luminance over xi_2 has its middle, against
+    the middle of what the eye sees of the order's strength over lambda / pitch, within 2 %."""
+    pitch, width, depth, size, wide = 1.6, 0.6, 0.12, 128, 0.5
+    at_light = np.array([0.0, 0.4, 1.0])  # over the plane
+    light = SphereLight(path="/l", radiance=np.full(3, 2.0), center=at_light - [0, 0, 1], radius=0.0, point=True)
+    material, floor = grating(pitch, width=width, depth=depth), [scenes.place(0, 0, (0, 0, -1))]
+    world = scenes.scene([scenes.plane(2.0)], [material], [light], instances=floor, cam=straight_down(wide))
+    asked = sw.Settings(width=size, height=size, spp=4, filter="box", effects=COMPILED)
+    film = sw.render(world, sw.make_plan(world, asked))
+    y = (0.5 - (np.arange(size) + 0.5) / size) * wide  # row 0 is the top
+    far = np.hypot(at_light[1] - y, at_light[2])
+    xi2 = (at_light[1] - y) / far
+    # a point light's irradiance times the cosine falls with far^-3; the line is as wide as far in the picture
+    column = (film["scratches"] @ LUMINANCE).sum(1) * far**2
+    at = np.arange(380.0, 781.0)
+    _, weights = spectral_samples(at)
+    strength = np.sin(2 * np.pi * depth / (at * 1e-3)) ** 2 * (weights @ LUMINANCE)
+    expected = (at * strength).sum() / strength.sum() * 1e-3 / pitch
+    first = (xi2 > 0.2) & (xi2 < 0.5)
+    weight = column[first] * np.abs(np.gradient(xi2))[first]
+    assert (weight * xi2[first]).sum() / weight.sum() == pytest.approx(expected, rel=0.02)
+    assert weight.sum() > 0.0
+
+
+def test_incoherent_pattern_is_as_bright_as_its_orders():
+    """Under a light of even radiance all around, orders or no orders: the same light, but for what of order 0 counts as
+    the base's, a (1 - a) |D|^2 against a |D|^2."""
+    films = [render(grating(2.0, c, width=0.8, depth=0.2), scenes.dome(), (), size=2, spp=4) for c in (True, False)]
+    coherent, incoherent = (f["scratches"].mean((0, 1)) for f in films)
+    assert coherent @ LUMINANCE == pytest.approx(0.6 * (incoherent @ LUMINANCE), rel=0.1)
