@@ -102,6 +102,7 @@ def _glint_fields(plan: EffectPlan) -> dict[str, Any]:
         "glint_segments": plan.on("diffraction.segments"),
         "glint_bands": plan.on("diffraction.bands"),
         "glint_gratings": plan.on("diffraction.bands") and plan.on("diffraction.coherent"),
+        "glint_lookup": plan.on("diffraction.lookup"),
         "glint_areas": plan.on("diffraction.areaLights"),
         "glint_method": "paper" if plan.on("diffraction.paperLights") else method,
     }

@@ -30,6 +30,8 @@ class WaveLayer:
             has anything to say: ``per_wavelength``.
         depth_spread, roughness [um].
         share, share_step, share_count: mean |D|^2 by depth, every ``share_step`` micrometres from 0.
+        wide, wide_depths, wide_reaches, depth_step, reach_step: its table in ``GlintArrays.wides`` (``wide_depths`` 0:
+            none), see ``wide_integral``.
     """
 
     wave: int
@@ -40,6 +42,11 @@ class WaveLayer:
     share: int
     share_step: float
     share_count: int
+    wide: int
+    wide_depths: int
+    wide_reaches: int
+    depth_step: float
+    reach_step: float
 
 
 @wp.struct
@@ -83,6 +90,7 @@ class GlintArrays:
     reflect: wp.array2d(dtype=wp.vec3)
     spectral: wp.array3d(dtype=float)
     shares: wp.array(dtype=wp.vec3)
+    wides: wp.array(dtype=wp.vec3)
     segments: wp.array(dtype=Segment)
     starts: wp.array(dtype=int)
     bvh: wp.uint64
@@ -140,6 +148,34 @@ def reflectance_at(a: GlintArrays, row: int, wavelength: int, cosine: float) -> 
     cell = wp.min(int(at), last - 1)
     t = at - float(cell)
     return (1.0 - t) * a.spectral[row, cell, wavelength] + t * a.spectral[row, cell + 1, wavelength]
+
+
+@wp.func
+def wide_node(a: GlintArrays, first: int, t: float, step: float) -> wp.vec3:
+    """Cubic between two entries (value, slope) of a row."""
+    low = a.wides[first]
+    high = a.wides[first + 2]
+    rise = high - low
+    bend = (1.0 - t) * (step * a.wides[first + 1] - rise) - t * (step * a.wides[first + 3] - rise)
+    return low + t * rise + t * (1.0 - t) * bend
+
+
+@wp.func
+def wide_integral(a: GlintArrays, layer: WaveLayer, depth: float, reach: float) -> wp.vec3:
+    """T(X, D) = integral of cmf(lambda) |D|^2 / 2 M(2 pi X / lambda), X = W xi_2 [um]: linear Rec.709, odd in X.
+
+    Across a light that covers the Gaussian along, its difference is all wavelengths at once.
+    """
+    x = wp.min(wp.abs(reach) / layer.reach_step, float(layer.wide_reaches - 1) - 1.0e-3)
+    y = wp.min(depth / layer.depth_step, float(layer.wide_depths - 1) - 1.0e-3)
+    i = int(x)
+    j = int(y)
+    row = layer.wide + 2 * (j * layer.wide_reaches + i)
+    below = wide_node(a, row, x - float(i), layer.reach_step)
+    above = wide_node(a, row + 2 * layer.wide_reaches, x - float(i), layer.reach_step)
+    t = y - float(j)
+    r = (1.0 - t) * below + t * above
+    return wp.where(reach < 0.0, -1.0, 1.0) * r
 
 
 @wp.func

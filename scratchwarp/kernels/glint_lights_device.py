@@ -35,7 +35,9 @@ def make_strand_light(key: KernelKey, transmittance):
     """Device function: the light that one scratch sends to the viewer, compiled for the lights of ``key``."""
     models = models_of(key)
     names = [model.name for model in models]
-    xi1_slices, radiance_of, radiance_from = make_glint_sums(key.glint_method, key.glint_gratings)
+    xi1_slices, radiance_of, radiance_from = make_glint_sums(
+        key.glint_method, key.glint_gratings, key.glint_lookup
+    )
 
     @wp.func
     def cap_light(

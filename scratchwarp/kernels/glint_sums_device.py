@@ -9,7 +9,15 @@ from ..reflectance.diffraction.response_device import (
     depth_response,
     sinc2,
 )
-from .glint_arrays_device import GlintArrays, Strand, WaveLayer, WaveMaterial, reflectance_at, reflectance_color
+from .glint_arrays_device import (
+    GlintArrays,
+    Strand,
+    WaveLayer,
+    WaveMaterial,
+    reflectance_at,
+    reflectance_color,
+    wide_integral,
+)
 from .glint_bands_device import order_interval, order_point
 
 _vec8 = wp.types.vector(length=8, dtype=float)
@@ -118,10 +126,11 @@ def point_light(
     return total
 
 
-def make_glint_sums(method: str, gratings: bool):
+def make_glint_sums(method: str, gratings: bool, lookup: bool):
     """(slices of a light, radiance under them, radiance under a direction).
 
-    ``method``: "slices", "closed-form" or "paper"; ``gratings``: whether any pattern shows orders.
+    ``method``: "slices", "closed-form" or "paper"; ``gratings``: whether any pattern shows orders; ``lookup``: wide
+    lights by the tables of ``wide_integral`` instead of wavelengths.
     """
     single = method != "slices"
     across = across_integral_paper if method == "paper" else across_integral
@@ -185,6 +194,17 @@ def make_glint_sums(method: str, gratings: bool):
                 if layer.per_wavelength == 0:
                     total = wp.cw_mul(total, reflectance_color(a, layer.reflect, places[count / 2][2]))
                 return total
+        if wp.static(lookup):
+            if whole == 1 and layer.wide_depths > 0:
+                for i in range(count):
+                    c = cuts[i]
+                    for half in range(2):
+                        if c[2 * half + 1] > c[2 * half]:
+                            end = wide_integral(a, layer, strand.depth, strand.width * c[2 * half + 1])
+                            begin = wide_integral(a, layer, strand.depth, strand.width * c[2 * half])
+                            part = places[i][1] * (end - begin)
+                            total += wp.cw_mul(part, reflectance_color(a, layer.reflect, places[i][2]))
+                return total * (2.0 / wp.pi * strand.length * strand.width)
         for k in range(wave.count):
             wavelength = a.wavelengths[wave.first + k]
             ratio = strand.width / wavelength

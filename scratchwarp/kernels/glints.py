@@ -9,16 +9,17 @@ import warp as wp
 
 from ..optics import spectra
 from ..plan import EffectPlan
-from ..plan.waves import REGULAR, WaveLayerPlan, is_grating, reflectances
-from ..reflectance.diffraction.color import spectral_samples
+from ..plan.waves import REGULAR, WaveLayerPlan, is_grating, looks_up, reflectances
 from ..scene import Scene, Wave
 from ..scratches.generate import random_scratches
 from ..scratches.segments import SegmentSet, Stroke, build
 from .geometry import PackedGeometry
 from .glint_arrays_device import BandData, GlintArrays, Spectrum, WaveLayer, WaveMaterial
+from .glint_tables import wavelengths_of, wide_table
 from .key import KernelKey
 
 COSINES = 33
+_SIZES = ("depth", "width")
 SHARES = 1024
 """Depths at which the mean |D|^2 of a layer is tabulated."""
 
@@ -34,21 +35,6 @@ class PackedGlints:
     def count(self) -> int:
         """Pieces of scratches."""
         return self.segments.count if self.segments is not None else 0
-
-
-def wavelengths_of(wave: Wave) -> tuple[np.ndarray, np.ndarray]:
-    """Wavelengths [um], the longest last, and linear Rec.709 of each; they add up to (1, 1, 1)."""
-    if wave.sampling == "rgb":
-        at, weights = spectral_samples("rgb")
-    else:
-        first, last = wave.wavelength_range
-        n = max(wave.samples, 1)
-        at = 1.0 / (1.0 / first - (np.arange(n) + 0.5) * ((1.0 / first - 1.0 / last) / n))
-        _, weights = spectral_samples(at) if n > 1 else spectral_samples(1)
-        if (first, last) == (380.0, 780.0):
-            at, weights = spectral_samples(n)
-    order = np.argsort(at)
-    return at[order] * 1e-3, weights[order]
 
 
 def _strokes(
@@ -123,13 +109,17 @@ def _shares(plan: WaveLayerPlan, deepest: float, wave: Wave) -> np.ndarray:
     return np.maximum((1.0 + rough**2 - 2.0 * rough * np.cos(k * depth)) @ weights, 0.0)
 
 
-def _layer_deepest(plan: WaveLayerPlan, scene: Scene, segments: SegmentSet | None, number: int) -> float:
-    deepest = 0.0 if plan.layer.space == "uv" else plan.layer.depth * (1.0 + plan.layer.depth_variation)
+def _largest(plan: WaveLayerPlan, segments: SegmentSet | None, number: int) -> tuple[float, float]:
+    """Greatest depth and width [um] of a layer."""
+    layer = plan.layer
+    sizes = [0.0, 0.0]
+    if layer.space != "uv":
+        sizes = [layer.depth * (1.0 + layer.depth_variation), layer.width * (1.0 + layer.width_variation)]
     if segments is not None and segments.count:
         rows = segments.segments.numpy()
-        own = rows["depth"][rows["layer"] == number]
-        deepest = max(deepest, float(own.max(initial=0.0)))
-    return max(deepest, 1e-3)
+        own = rows["layer"] == number
+        sizes = [max(size, float(rows[name][own].max(initial=0.0))) for size, name in zip(sizes, _SIZES, strict=True)]
+    return max(sizes[0], 1e-3), max(sizes[1], 1e-3)
 
 
 def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, device: str = "cpu") -> PackedGlints:
@@ -171,6 +161,7 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
     shares: list[np.ndarray] = []
     reflect: list[np.ndarray] = []
     most = max(len(at) for at in lams)
+    wides: list[np.ndarray] = []
     spectral = np.ones((len(numbers), COSINES, most), np.float32)
     for (m, k), number in numbers.items():
         w = plan.waves[m]
@@ -179,11 +170,20 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
         row: Any = WaveLayer()
         row.wave, row.reflect, row.per_wavelength = int(which[m]), number, int(own.index is not None)
         row.roughness = w.wave.roughness
+        spread = 0.0
         if own.layer.distribution in REGULAR:
-            row.depth_spread = own.layer.depth * own.layer.depth_variation / math.sqrt(3.0)
-        deepest = _layer_deepest(own, scene, segments, number)
+            spread = own.layer.depth * own.layer.depth_variation / math.sqrt(3.0)
+        row.depth_spread = spread
+        deepest, widest = _largest(own, segments, number)
         row.share, row.share_count, row.share_step = len(shares) * SHARES, SHARES, deepest / (SHARES - 1)
         shares.append(_shares(own, deepest, w.wave))
+        table = wide_table(w.wave, deepest, 2.0 * widest, spread) if key.glint_lookup else None
+        if table is not None and looks_up(w.wave):
+            row.wide = sum(x.size // 3 for x in wides)
+            row.wide_depths, row.wide_reaches = table.shape[:2]
+            row.depth_step = deepest / (table.shape[0] - 1)
+            row.reach_step = 2.0 * widest / (table.shape[1] - 1)
+            wides.append(table)
         color, by_wave = reflectances(own, np.linspace(0.0, 1.0, COSINES), lams[which[m]] * 1e3)
         reflect.append(color)
         spectral[number, :, : by_wave.shape[1]] = by_wave
@@ -200,4 +200,6 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
     arrays.reflect = floats(np.stack(reflect), wp.vec3)
     arrays.spectral = floats(spectral, float)
     arrays.shares = floats(np.concatenate(shares), wp.vec3)
+    if wides:
+        arrays.wides = floats(np.concatenate([x.reshape(-1, 3) for x in wides]), wp.vec3)
     return PackedGlints(arrays, segments)

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 from ..scene import Layer
-from .waves import REGULAR, is_grating
+from .waves import REGULAR, is_grating, looks_up
 
 Answer = tuple[bool, str, tuple[str, ...]]
 
@@ -48,6 +48,13 @@ def _areas(f: Any) -> Answer:
     return _answer(found, "lights with an extent, integrated slice by slice", "every light is a point or a direction")
 
 
+def _lookup(f: Any) -> Answer:
+    if not _areas(f)[0]:
+        return False, "no light has an extent", ()
+    found = [p.layer.label for own in f.waves if own is not None for p in own.layers if looks_up(own.wave)]
+    return _answer(found, "colours under wide lights come from a table", "wavelengths are sampled, as asked for")
+
+
 def _never(text: str) -> Callable[[Any], Answer]:
     return lambda f: (False, text, ())
 
@@ -58,6 +65,7 @@ WAVE_EFFECTS: dict[str, Callable[[Any], Answer]] = {
     "diffraction.bands": _bands,
     "diffraction.coherent": _coherent,
     "diffraction.areaLights": _areas,
+    "diffraction.lookup": _lookup,
     "diffraction.closedForm": _never("lights in 8 slices; on: the slice xi_1 = 0 alone (Velinov 2018 Eq. 27)"),
     "diffraction.paperLights": _never("exact sine integral; on: Velinov 2018 Eq. 27 with Eq. 29"),
 }

@@ -44,6 +44,11 @@ def is_grating(wave: Wave, layer: Layer) -> bool:
     return wave.summation == "coherent" and layer.distribution in REGULAR and close
 
 
+def looks_up(wave: Wave) -> bool:
+    """Whether colours may come from tables: sampling auto or lookup, and a phase that does not depend on angles."""
+    return wave.sampling in ("auto", "lookup") and wave.phase == "smallAngle"
+
+
 def wave_index(material: Material, layer: Layer) -> Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]] | None:
     """The refractive index by wavelength: that of ScratchWaveAPI, else of the measured metal that the scratch is of."""
     wave = material.wave
@@ -86,8 +91,8 @@ def plan_waves(
 
 def reflectances(plan: WaveLayerPlan, cosines: np.ndarray, wavelengths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(linear Rec.709 ``[c, 3]``, by wavelength [nm] ``[c, n]``) of a layer; the latter ones where it is not known."""
+    by_color = np.broadcast_to(plan.fresnel.reflectance(cosines), (len(cosines), 3))
     if plan.index is None:
-        color = np.broadcast_to(plan.fresnel.reflectance(cosines), (len(cosines), 3))
-        return color, np.ones((len(cosines), len(wavelengths)))
+        return by_color, np.ones((len(cosines), len(wavelengths)))
     r_s, r_p = optics.fresnel.amplitudes(cosines[:, None], *plan.index(wavelengths))
-    return np.ones((len(cosines), 3)), 0.5 * (np.abs(r_s) ** 2 + np.abs(r_p) ** 2)
+    return by_color, 0.5 * (np.abs(r_s) ** 2 + np.abs(r_p) ** 2)
