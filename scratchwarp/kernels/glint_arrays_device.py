@@ -30,8 +30,10 @@ class WaveLayer:
             has anything to say: ``per_wavelength``.
         depth_spread, roughness [um].
         share, share_step, share_count: mean |D|^2 by depth, every ``share_step`` micrometres from 0.
-        wide, wide_depths, wide_reaches, depth_step, reach_step: its table in ``GlintArrays.wides`` (``wide_depths`` 0:
-            none), see ``wide_integral``.
+        wide, wide_depths, wide_reaches, depth_first, depth_step, reach_step: its table in ``GlintArrays.wides``
+            (``wide_depths`` 0: none), see ``wide_integral``.
+        outline, facets: rows of its cross-section in ``GlintArrays.outlines``, none for a rectangle.
+        angles: 1 where the phase that the depth gives depends on the directions.
     """
 
     wave: int
@@ -45,8 +47,12 @@ class WaveLayer:
     wide: int
     wide_depths: int
     wide_reaches: int
+    depth_first: float
     depth_step: float
     reach_step: float
+    outline: int
+    facets: int
+    angles: int
 
 
 @wp.struct
@@ -91,6 +97,7 @@ class GlintArrays:
     spectral: wp.array3d(dtype=float)
     shares: wp.array(dtype=wp.vec3)
     wides: wp.array(dtype=wp.vec3)
+    outlines: wp.array(dtype=wp.vec4d)
     segments: wp.array(dtype=Segment)
     starts: wp.array(dtype=int)
     bvh: wp.uint64
@@ -167,7 +174,7 @@ def wide_integral(a: GlintArrays, layer: WaveLayer, depth: float, reach: float) 
     Across a light that covers the Gaussian along, its difference is all wavelengths at once.
     """
     x = wp.min(wp.abs(reach) / layer.reach_step, float(layer.wide_reaches - 1) - 1.0e-3)
-    y = wp.min(depth / layer.depth_step, float(layer.wide_depths - 1) - 1.0e-3)
+    y = wp.clamp((depth - layer.depth_first) / layer.depth_step, 0.0, float(layer.wide_depths - 1) - 1.0e-3)
     i = int(x)
     j = int(y)
     row = layer.wide + 2 * (j * layer.wide_reaches + i)

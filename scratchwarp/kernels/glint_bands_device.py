@@ -13,8 +13,9 @@ xi_2 gives: an integral over wavelengths, not a sampling of them.
 import warp as wp
 
 from ..optics.frames_device import frame_with_tangent
-from ..reflectance.diffraction.response_device import along_variance, depth_response, sinc2
+from ..reflectance.diffraction.response_device import along_variance
 from .geometry_device import Geometry, Surface, uv_motion
+from .glint_across_device import across_value
 from .glint_arrays_device import BandData, GlintArrays, Spectrum, Strand, WaveLayer, WaveMaterial, reflectance_at
 
 _vec3x = wp.types.vector(length=3, dtype=float)
@@ -152,7 +153,7 @@ def order_point(
     xi2: float,
     cosine: float,
 ) -> wp.vec3:
-    """All orders but 0 towards one direction, for irradiance 1: each shows one wavelength."""
+    """All orders but 0 towards one direction, for irradiance 1: each shows one wavelength. Small angles."""
     total = wp.vec3(0.0, 0.0, 0.0)
     reach = strand.pitch * wp.abs(xi2)
     first = int(wp.ceil(reach / last_wavelength(a.spectrum)))
@@ -162,9 +163,8 @@ def order_point(
         own = along_variance(wave.sigma, wavelength)
         variance = own + spread
         value = wp.sqrt(own / variance) * wp.exp(-0.5 * xi1 * xi1 / variance)
-        value *= 2.0 * _SQRT_PI * wave.sigma * strand.width * strand.width / (wavelength * strand.pitch * float(n))
-        value *= sinc2(strand.width * float(n) / strand.pitch)
-        value *= depth_response(strand.depth, wavelength, 2.0, layer.depth_spread, layer.roughness)
+        value *= 2.0 * _SQRT_PI * wave.sigma * wavelength / (strand.pitch * float(n))
+        value *= across_value(a, layer, strand, wavelength, xi2, 2.0)
         total += value * near_reflectance(a, wave, layer, wavelength, cosine) * spectrum_at(a.spectrum, wavelength)
     return total
 
@@ -184,7 +184,6 @@ def order_interval(
     """All orders but 0 over 0 <= ``low`` < |xi_2| < ``high`` of one slice; ``place``: (xi_1, weight, cosine)."""
     total = wp.vec3(0.0, 0.0, 0.0)
     if high > low:
-        share = strand.width / strand.pitch
         shortest = a.spectrum.first
         longest = last_wavelength(a.spectrum)
         first = int(wp.ceil(strand.pitch * low / longest))
@@ -204,9 +203,10 @@ def order_interval(
                             variance = along_variance(wave.sigma, wavelength) + spread
                             x = place[0]
                             value *= wp.exp(-0.5 * x * x / variance) / (_SQRT_TWO_PI * wp.sqrt(variance))
-                        value *= depth_response(strand.depth, wavelength, 2.0, layer.depth_spread, layer.roughness)
+                        lobe = across_value(a, layer, strand, wavelength, float(n) * wavelength / strand.pitch, 2.0)
+                        value *= lobe * (wavelength / strand.pitch) * (wavelength / strand.pitch)
                         value *= near_reflectance(a, wave, layer, wavelength, place[2])
                         part += value * spectrum_at(a.spectrum, wavelength)
-                total += sinc2(share * float(n)) * part
-        total = total * (share * share * place[1])
+                total += part
+        total = total * place[1]
     return total

@@ -36,7 +36,7 @@ def make_strand_light(key: KernelKey, transmittance):
     models = models_of(key)
     names = [model.name for model in models]
     xi1_slices, radiance_of, radiance_from = make_glint_sums(
-        key.glint_method, key.glint_gratings, key.glint_lookup
+        key.glint_method, key.glint_gratings, key.glint_lookup, key.glint_numeric
     )
 
     @wp.func

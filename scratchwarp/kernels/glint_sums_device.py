@@ -7,8 +7,8 @@ from ..reflectance.diffraction.response_device import (
     across_integral_paper,
     along_variance,
     depth_response,
-    sinc2,
 )
+from .glint_across_device import across_numeric, across_value
 from .glint_arrays_device import (
     GlintArrays,
     Strand,
@@ -110,13 +110,13 @@ def point_light(
     x = i[0] + view.o[0] + view.shift
     xi2 = i[1] + view.o[1]
     cosine = wp.sqrt(wp.max(0.5 + 0.5 * wp.dot(i, view.o), 0.0))
+    g = wp.where(layer.angles == 1, i[2] + view.o[2], 2.0)
     for k in range(wave.count):
         wavelength = a.wavelengths[wave.first + k]
-        ratio = strand.width / wavelength
         own = along_variance(wave.sigma, wavelength)
         variance = own + view.spread
-        value = wp.sqrt(own / variance) * wp.exp(-0.5 * x * x / variance) * ratio * ratio * sinc2(ratio * xi2)
-        value *= depth_response(strand.depth, wavelength, 2.0, layer.depth_spread, layer.roughness)
+        value = wp.sqrt(own / variance) * wp.exp(-0.5 * x * x / variance)
+        value *= across_value(a, layer, strand, wavelength, xi2, g)
         if layer.per_wavelength == 1:
             value *= reflectance_at(a, layer.reflect, k, cosine)
         total += value * a.colors[wave.first + k]
@@ -126,11 +126,12 @@ def point_light(
     return total
 
 
-def make_glint_sums(method: str, gratings: bool, lookup: bool):
+def make_glint_sums(method: str, gratings: bool, lookup: bool, numeric: bool):
     """(slices of a light, radiance under them, radiance under a direction).
 
     ``method``: "slices", "closed-form" or "paper"; ``gratings``: whether any pattern shows orders; ``lookup``: wide
-    lights by the tables of ``wide_integral`` instead of wavelengths.
+    lights by the tables of ``wide_integral`` instead of wavelengths; ``numeric``: some cross-section is no rectangle
+    or some phase depends on angles.
     """
     single = method != "slices"
     across = across_integral_paper if method == "paper" else across_integral
@@ -205,6 +206,7 @@ def make_glint_sums(method: str, gratings: bool, lookup: bool):
                             part = places[i][1] * (end - begin)
                             total += wp.cw_mul(part, reflectance_color(a, layer.reflect, places[i][2]))
                 return total * (2.0 / wp.pi * strand.length * strand.width)
+        special = wp.static(numeric) and (layer.facets > 0 or layer.angles == 1)
         for k in range(wave.count):
             wavelength = a.wavelengths[wave.first + k]
             ratio = strand.width / wavelength
@@ -217,11 +219,20 @@ def make_glint_sums(method: str, gratings: bool, lookup: bool):
                     x = places[i][0]
                     along = places[i][1] * wp.sqrt(own / variance) * wp.exp(-0.5 * x * x / variance)
                 c = cuts[i]
-                seen = across(ratio, c[0], c[1]) + across(ratio, c[2], c[3])
+                seen = float(0.0)
+                if wp.static(numeric):
+                    if special:
+                        u = places[i][0] - view.o[0] - view.shift
+                        seen = across_numeric(a, layer, strand, wavelength, view.o, u, c[0], c[1])
+                        seen += across_numeric(a, layer, strand, wavelength, view.o, u, c[2], c[3])
+                if not special:
+                    seen = across(ratio, c[0], c[1]) + across(ratio, c[2], c[3])
                 if layer.per_wavelength == 1:
                     seen *= reflectance_at(a, layer.reflect, k, places[i][2])
                 value += along * seen
-            value *= ratio * ratio * depth_response(strand.depth, wavelength, 2.0, layer.depth_spread, layer.roughness)
+            if not special:
+                value *= ratio * ratio
+                value *= depth_response(strand.depth, wavelength, 2.0, layer.depth_spread, layer.roughness)
             total += value * a.colors[wave.first + k]
         total = total * (2.0 * _SQRT_PI * wave.sigma * strand.length)
         if layer.per_wavelength == 0:

@@ -9,6 +9,8 @@ DEPTH_STEP = 0.006
 """Of ``wide_table`` [um]: a fringe of |D|^2 is at least 0.19 um deep; linear between, error 0.5 % of one."""
 REACH_STEP = 0.04
 """Of ``wide_table`` [um]: a fringe of M is at least 0.38 um wide; cubic between them."""
+MOST_TERMS = 100_000_000
+"""Of one table of a cross-section: a second or two."""
 MOST_NODES = 2_000_000
 """Of one table, 48 MB. Scratches that need more show no colours that a table would get right more cheaply."""
 
@@ -28,18 +30,25 @@ def wavelengths_of(wave: Wave) -> tuple[np.ndarray, np.ndarray]:
     return at[order] * 1e-3, weights[order]
 
 
-def wide_table(wave: Wave, deepest: float, reach: float, spread: float) -> np.ndarray | None:
-    """T(X, D) and its slope in X, shape [depths, reaches, 2, 3], see ``glint_arrays_device.wide_integral``; depths from
-    0 to ``deepest``, reaches from 0 to ``reach`` [um]; ``spread``: of the depths. None where that is too large."""
-    depths, reaches = int(np.ceil(deepest / DEPTH_STEP)) + 2, int(np.ceil(reach / REACH_STEP)) + 2
-    if depths * reaches > MOST_NODES:
+def wide_table(
+    wave: Wave, depths: tuple[float, float], reach: float, spread: float, outline: np.ndarray | None = None
+) -> np.ndarray | None:
+    """T(X, D) and its slope in X, shape [depths, reaches, 2, 3], see ``glint_arrays_device.wide_integral``.
+
+    ``depths``: least and greatest; reaches from 0 to ``reach`` [um]; ``spread``: of the depths; ``outline``: facets of
+    a cross-section that is no rectangle. None where that is too large, or where the lobe is not even in xi_2.
+    """
+    rows, reaches = int(np.ceil((depths[1] - depths[0]) / DEPTH_STEP)) + 2, int(np.ceil(reach / REACH_STEP)) + 2
+    if rows * reaches > MOST_NODES:
         return None
     at, weights = spectral_samples(64)
     at = at * 1e-3
+    depth = np.linspace(depths[0], depths[1], rows)[:, None]
+    if outline is not None:
+        return _outline_table(depth, reaches, reach, at, weights, outline)
     k = 4.0 * np.pi / at
     rough, vary = np.exp(-0.5 * (k * wave.roughness) ** 2), np.exp(-0.5 * (k * spread) ** 2)
-    fringes = np.cos(np.linspace(0.0, deepest, depths)[:, None] * k)
-    half_d2 = 0.5 * (1.0 + rough**2 - 2.0 * rough * vary * fringes)
+    half_d2 = 0.5 * (1.0 + rough**2 - 2.0 * rough * vary * np.cos(depth * k))
     x = np.linspace(0.0, reach, reaches)[:, None] * (2.0 * np.pi / at)
     # M by Simpson's rule on a fine grid: the integrand is 1 / 2 at 0 and smooth
     step = 0.02
@@ -50,3 +59,25 @@ def wide_table(wave: Wave, deepest: float, reach: float, spread: float) -> np.nd
     slope = 0.5 * np.sinc(x / (2.0 * np.pi)) ** 2 * (2.0 * np.pi / at)
     both = np.stack([m, slope], axis=1)  # [reaches, 2, wavelengths]
     return np.einsum("dk,rsk,kc->drsc", half_d2, both, weights, optimize=True).astype(np.float32)
+
+
+def _outline_table(
+    depth: np.ndarray, reaches: int, reach: float, at: np.ndarray, weights: np.ndarray, outline: np.ndarray
+) -> np.ndarray | None:
+    """The same of facets: (pi / 2) integral of |p|^2 dX / lambda, p the transform over a width of 1."""
+    fine = 4 * (reaches - 1) + 1
+    even = np.allclose(outline[::-1] * [-1, 1, 1, -1], outline, atol=1e-9)
+    if not even or len(depth) * fine * len(at) * len(outline) > MOST_TERMS:
+        return None
+    x = np.linspace(0.0, reach, fine)[:, None] / at
+    table = np.empty((len(depth), reaches, 2, 3), np.float32)
+    step = reach / (fine - 1)
+    for row, d in enumerate(depth / at):
+        p = np.zeros(x.shape, complex)
+        for v, height, width, rise in outline:
+            bounced = np.exp(-4j * np.pi * d * height) * np.sinc(x * width + 2.0 * d * rise)
+            p += width * np.exp(-2j * np.pi * x * v) * (np.sinc(x * width) - bounced)
+        density = (0.5 * np.pi * np.abs(p) ** 2 / at) @ weights
+        sums = np.concatenate([np.zeros((1, 3)), np.cumsum(0.5 * (density[1:] + density[:-1]) * step, axis=0)])
+        table[row, :, 0], table[row, :, 1] = sums[::4], density[::4]
+    return table

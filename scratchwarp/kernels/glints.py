@@ -105,6 +105,12 @@ def _shares(plan: WaveLayerPlan, deepest: float, wave: Wave) -> np.ndarray:
     at, weights = wavelengths_of(wave)
     k = 2.0 * np.pi * 2.0 / at
     depth = np.linspace(0.0, deepest, SHARES)[:, None]
+    if plan.outline is not None:
+        power = np.zeros((SHARES, len(at)))
+        for _, height, width, rise in plan.outline:
+            # the mean of |1 - e^{i k h}|^2 over a straight facet
+            power += width * (2.0 - 2.0 * np.cos(k * depth * height) * np.sinc(k * depth * rise / (2.0 * np.pi)))
+        return np.maximum(power @ weights, 0.0)
     rough = np.exp(-0.5 * (k * wave.roughness) ** 2)
     return np.maximum((1.0 + rough**2 - 2.0 * rough * np.cos(k * depth)) @ weights, 0.0)
 
@@ -120,6 +126,18 @@ def _largest(plan: WaveLayerPlan, segments: SegmentSet | None, number: int) -> t
         own = rows["layer"] == number
         sizes = [max(size, float(rows[name][own].max(initial=0.0))) for size, name in zip(sizes, _SIZES, strict=True)]
     return max(sizes[0], 1e-3), max(sizes[1], 1e-3)
+
+
+def _shallowest(plan: WaveLayerPlan, segments: SegmentSet | None, number: int) -> float:
+    """Least depth [um] of a layer."""
+    layer = plan.layer
+    if layer.distribution in REGULAR and layer.space != "uv":
+        return layer.depth
+    if segments is None or not segments.count:
+        return 0.0
+    rows = segments.segments.numpy()
+    own = rows["depth"][rows["layer"] == number]
+    return float(own.min()) if len(own) else 0.0
 
 
 def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, device: str = "cpu") -> PackedGlints:
@@ -162,6 +180,7 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
     reflect: list[np.ndarray] = []
     most = max(len(at) for at in lams)
     wides: list[np.ndarray] = []
+    outlines: list[np.ndarray] = []
     spectral = np.ones((len(numbers), COSINES, most), np.float32)
     for (m, k), number in numbers.items():
         w = plan.waves[m]
@@ -177,11 +196,19 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
         deepest, widest = _largest(own, segments, number)
         row.share, row.share_count, row.share_step = len(shares) * SHARES, SHARES, deepest / (SHARES - 1)
         shares.append(_shares(own, deepest, w.wave))
-        table = wide_table(w.wave, deepest, 2.0 * widest, spread) if key.glint_lookup else None
-        if table is not None and looks_up(w.wave):
+        row.angles = int(w.wave.phase == "angleDependent")
+        if own.outline is not None:
+            row.outline, row.facets = sum(map(len, outlines)), len(own.outline)
+            outlines.append(own.outline)
+        shallowest = _shallowest(own, segments, number)
+        table = None
+        if key.glint_lookup and looks_up(w.wave):
+            table = wide_table(w.wave, (shallowest, deepest), 2.0 * widest, spread, own.outline)
+        if table is not None:
+            row.depth_first = shallowest
             row.wide = sum(x.size // 3 for x in wides)
             row.wide_depths, row.wide_reaches = table.shape[:2]
-            row.depth_step = deepest / (table.shape[0] - 1)
+            row.depth_step = max(deepest - shallowest, 1e-6) / (table.shape[0] - 1)
             row.reach_step = 2.0 * widest / (table.shape[1] - 1)
             wides.append(table)
         color, by_wave = reflectances(own, np.linspace(0.0, 1.0, COSINES), lams[which[m]] * 1e3)
@@ -200,6 +227,8 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
     arrays.reflect = floats(np.stack(reflect), wp.vec3)
     arrays.spectral = floats(spectral, float)
     arrays.shares = floats(np.concatenate(shares), wp.vec3)
+    if outlines:
+        arrays.outlines = wp.array(np.concatenate(outlines), dtype=wp.vec4d, device=device)
     if wides:
         arrays.wides = floats(np.concatenate([x.reshape(-1, 3) for x in wides]), wp.vec3)
     return PackedGlints(arrays, segments)

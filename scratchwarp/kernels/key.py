@@ -24,7 +24,8 @@ class KernelKey:
         glints: some scratches diffract. glint_segments: explicit ones; glint_bands: regular patterns.
         glint_gratings: some of them show orders.
         glint_areas: under lights with an extent. glint_method: slices, closed-form or paper.
-        glint_lookup: colours under wide lights are looked up.
+        glint_lookup: colours under wide lights are looked up. glint_numeric: some cross-section is no
+            rectangle, or some phase depends on angles.
         closed_form: light along the cones of scratches is integrated; cone_taps: some of those lights are not even.
         sample_lights, sample_cones: scratches look for the other lights by drawing from these, from their own cone.
     """
@@ -59,6 +60,7 @@ class KernelKey:
     glint_gratings: bool = False
     glint_areas: bool = False
     glint_lookup: bool = False
+    glint_numeric: bool = False
     glint_method: str = "slices"
     closed_form: bool = False
     cone_taps: bool = False

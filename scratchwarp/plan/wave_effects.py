@@ -55,6 +55,18 @@ def _lookup(f: Any) -> Answer:
     return _answer(found, "colours under wide lights come from a table", "wavelengths are sampled, as asked for")
 
 
+def _outlines(f: Any) -> Answer:
+    waves = [own for own in f.waves if own is not None]
+    found = [p.layer.label for own in waves for p in own.layers if p.outline is not None]
+    return _answer(found, "cross-sections other than rectangles, integrated numerically", "every one is a rectangle")
+
+
+def _angles(f: Any) -> Answer:
+    waves = [own for own in f.waves if own is not None and own.wave.phase == "angleDependent"]
+    found = [p.layer.label for own in waves for p in own.layers]
+    return _answer(found, "phases of depths depend on the directions, integrated numerically", "small angles")
+
+
 def _never(text: str) -> Callable[[Any], Answer]:
     return lambda f: (False, text, ())
 
@@ -66,6 +78,8 @@ WAVE_EFFECTS: dict[str, Callable[[Any], Answer]] = {
     "diffraction.coherent": _coherent,
     "diffraction.areaLights": _areas,
     "diffraction.lookup": _lookup,
+    "diffraction.outlines": _outlines,
+    "diffraction.angles": _angles,
     "diffraction.closedForm": _never("lights in 8 slices; on: the slice xi_1 = 0 alone (Velinov 2018 Eq. 27)"),
     "diffraction.paperLights": _never("exact sine integral; on: Velinov 2018 Eq. 27 with Eq. 29"),
 }

@@ -8,7 +8,9 @@ import numpy as np
 
 from .. import optics
 from ..optics import metals
+from ..reflectance.diffraction.outline import facets
 from ..scene import Layer, Material, Scene, ScratchSurface, Wave
+from .profiles import cross_section
 
 # Patterns of regular pitch have a closed form; all others become explicit scratches.
 REGULAR = ("linear", "concentric", "spiral", "crosshatch")
@@ -17,11 +19,13 @@ REGULAR = ("linear", "concentric", "spiral", "crosshatch")
 @dataclass(frozen=True, eq=False)
 class WaveLayerPlan:
     """A layer that diffracts; ``fresnel``: an ``optics`` reflector; ``index``: wavelength [nm] -> (n, k), or None where
-    its reflectance is known for R, G and B alone."""
+    its reflectance is known for R, G and B alone; ``outline``: rows of ``diffraction``'s facets ``[n, 4]``, None for a
+    rectangle."""
 
     layer: Layer
     fresnel: Any
     index: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]] | None
+    outline: np.ndarray | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,6 +68,17 @@ def wave_index(material: Material, layer: Layer) -> Callable[[np.ndarray], tuple
     return None
 
 
+def outline(layer: Layer) -> np.ndarray | None:
+    """The facets of a layer's cross-section, None where it is a rectangle as wide and deep as the scratch.
+
+    Raises ValueError on a profile that cannot be drawn.
+    """
+    if layer.profile.shape == "rectangle" and layer.profile.rim == 0.0:
+        return None
+    rows = facets(cross_section(layer.profile, layer))
+    return rows if len(rows) else np.zeros((1, 4))
+
+
 def plan_waves(
     scene: Scene,
     wanted: Callable[[Material, Layer], bool],
@@ -84,7 +99,7 @@ def plan_waves(
             if wanted(material, layer) and layer.width > 0.0:
                 fresnel = reflector(scene, material, layer)[0]
                 if fresnel is not None:
-                    own.append(WaveLayerPlan(layer, fresnel, wave_index(material, layer)))
+                    own.append(WaveLayerPlan(layer, fresnel, wave_index(material, layer), outline(layer)))
         made.append(WavePlan(material.wave, tuple(own)) if own and material.wave is not None else None)
     return tuple(made)
 

@@ -32,7 +32,8 @@ LENGTH = 0.004
 # one kernel for all tests: its code does not depend on which of these lights are there
 LIGHTS = {f"lights.{name}": True for name in ("distant", "sphere", "rect", "dome")}
 COMPILED = {**LIGHTS, "shadows": True}
-COMPILED |= {f"diffraction.{name}": True for name in ("areaLights", "segments", "bands", "coherent", "lookup")}
+WAVES = ("areaLights", "segments", "bands", "coherent", "lookup", "outlines", "angles")
+COMPILED |= {f"diffraction.{name}": True for name in WAVES}
 
 
 def black():
@@ -45,7 +46,8 @@ def waves(**fields):
     surface = fields.pop("surface", black())
     wave = fields.pop("wave", Wave(coherence_radius=SIGMA))
     fields = {"distribution": "curves", "curves": (0,), "fresnel": "mirror", "width": 3.0, "depth": 1.0, **fields}
-    layer = Layer(name="fine", prim="/mat", profile=Profile(path="/mat/box", shape="rectangle"), **fields)
+    profile = Profile(path="/mat/box", shape=fields.pop("shape", "rectangle"))
+    layer = Layer(name="fine", prim="/mat", profile=profile, **fields)
     return Material(path="/mat", surface=surface, layers=(layer,), wave=wave)
 
 
@@ -125,12 +127,43 @@ def test_area_lights_against_the_library(kind, offset):
     assert flux(film, 0.001) @ LUMINANCE == pytest.approx(expected @ LUMINANCE, rel=0.03, abs=0.0)
 
 
+@pytest.mark.parametrize("shape, phase", [("vGroove", "smallAngle"), ("rectangle", "angleDependent")])
+def test_cross_sections_and_phases_against_the_library(shape, phase):
+    """A V groove, and a depth that counts with the cosines of both directions, under a small sphere: 3 % as above."""
+    angle, size, length = 0.5, 0.01, 2e-4
+    center = np.array([-0.6 * np.sin(angle), 0.6 * np.cos(angle), 0.8])
+    light = SphereLight(path="/l", radiance=np.full(3, 2.0), center=center - [0, 0, 1], radius=size)
+    material = waves(shape=shape, wave=Wave(coherence_radius=SIGMA, phase=phase))
+    film = render(material, light, (stroke(angle, length=length),), spp=64, camera=straight_down(0.001))
+    at, weights = spectral_samples(16)
+    profile = sw.profiles.shape(shape, depth=1.0 / 3.0, isolated=True) if shape != "rectangle" else None
+    one = diffraction.Scratch(3.0, 1.0, angle, 0.0, SIGMA, profile=profile)
+    how = "small-angle" if phase == "smallAngle" else "angle-dependent"
+    known = diffraction.SphereLight(center, size)
+    f = diffraction.radiance(known, np.array([0, 0, 1.0]), one, at, phase=how, slices=16)
+    expected = 2.0 * np.sqrt(np.pi) * SIGMA * 1e-6 * length * (f @ weights)
+    assert flux(film, 0.001) @ LUMINANCE == pytest.approx(expected @ LUMINANCE, rel=0.03, abs=0.0)
+
+
+@pytest.mark.parametrize("shape", ["vGroove", "rectangle"])
+def test_tables_of_wide_lights_against_wavelengths(shape):
+    """The same dome by the table of colours and by 64 wavelengths: the table is linear between depths 6 nm apart, 0.5 %
+    of a fringe."""
+    films = [
+        render(waves(shape=shape, wave=Wave(SIGMA, samples=64, sampling=how)), scenes.dome(), (stroke(0.3),), size=4)
+        for how in ("lookup", "wavelengths")
+    ]
+    looked, sampled = (flux(f) for f in films)
+    np.testing.assert_allclose(looked, sampled, rtol=1e-2)
+
+
 @pytest.mark.parametrize("coverage", [0.05, 0.8])
 def test_furnace(coverage):
     """Scratches on a mirror under an even white dome: base and scratches return at most what arrives, and nearly all
     of it but what diffracts below the horizon (lobe fraction of 6 um scratches: 0.98)."""
     mirror = PreviewSurface(diffuse_color=(1, 1, 1), metallic=1.0, roughness=0.0)
-    material = waves(surface=mirror, distribution="random", coverage=coverage, width=6.0, length=4000.0, depth_variation=0.5)
+    laid = {"distribution": "random", "coverage": coverage, "width": 6.0, "length": 4000.0, "depth_variation": 0.5}
+    material = waves(surface=mirror, **laid)
     film = render(material, scenes.dome(), (), size=4, spp=1)
     color = film["color"]
     assert np.isfinite(color).all() and color.min() >= 0.0

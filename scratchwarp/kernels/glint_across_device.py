@@ -1,0 +1,52 @@
+"""The lobe of a strand across it: rectangles, other cross-sections, depths whose phase depends on the directions."""
+
+import warp as wp
+
+from ..reflectance.diffraction.outline_device import outline_transform
+from ..reflectance.diffraction.response_device import depth_response, sinc2
+from .glint_arrays_device import GlintArrays, Strand, WaveLayer
+
+_vec5 = wp.types.vector(length=5, dtype=float)
+# Gauss-Legendre over [0, 1].
+_FIVE = wp.constant(_vec5(0.0469100770, 0.2307653449, 0.5, 0.7692346551, 0.9530899230))
+_FIVE_WEIGHTS = wp.constant(_vec5(0.1184634425, 0.2393143352, 0.2844444444, 0.2393143352, 0.1184634425))
+
+
+@wp.func
+def across_value(a: GlintArrays, layer: WaveLayer, strand: Strand, wavelength: float, xi2: float, g: float) -> float:
+    """|P|^2 / lambda^2 of a strand's cross-section across it; ``g``: sum of the cosines, 2 for small angles."""
+    ratio = strand.width / wavelength
+    if layer.facets > 0:
+        depth = wp.float64(strand.depth / wavelength)
+        p = outline_transform(
+            a.outlines, layer.outline, layer.facets, wp.float64(ratio), depth, wp.float64(xi2), wp.float64(g)
+        )
+        return float(p[0] * p[0] + p[1] * p[1])
+    return (
+        ratio
+        * ratio
+        * sinc2(ratio * xi2)
+        * depth_response(strand.depth, wavelength, g, layer.depth_spread, layer.roughness)
+    )
+
+
+@wp.func
+def across_numeric(
+    a: GlintArrays, layer: WaveLayer, strand: Strand, wavelength: float, o: wp.vec3, u: float, low: float, high: float
+) -> float:
+    """Integral of ``across_value`` over xi_2 in [low, high] of the slice u: five nodes for each cycle of phase."""
+    total = float(0.0)
+    if high > low:
+        s2 = wp.max((1.0 - u) * (1.0 + u), 0.0)
+        cycles = (strand.width + 2.0 * strand.depth) / wavelength * (high - low)
+        panels = int(wp.clamp(wp.ceil(cycles), 1.0, 4096.0))
+        width = (high - low) / float(panels)
+        for i in range(panels):
+            for j in range(5):
+                xi2 = low + width * (float(i) + _FIVE[j])
+                g = float(2.0)
+                if layer.angles == 1:
+                    across = xi2 - o[1]
+                    g = o[2] + wp.sqrt(wp.max(s2 - across * across, 0.0))
+                total += _FIVE_WEIGHTS[j] * width * across_value(a, layer, strand, wavelength, xi2, g)
+    return total
