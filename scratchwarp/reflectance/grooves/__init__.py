@@ -1,8 +1,9 @@
 """Grooves one by one: exact at any distance (Bosch, Pueyo, Merillou, Ghazanfarpour 2008); names load on first use.
 
 From NumPy: ``masking`` (what is seen and lit in a cross-section), ``pattern`` (paths and sections -> pieces),
-``footprint`` (mean radiance of an ellipse), ``section`` (checks). The device code, all float64 for a footprint may be a
-millionth of the uv square, in any one unit of length, with the plane z = 0 and z up:
+``footprint`` (mean radiance of an ellipse), ``walks`` (bounces), ``facet`` (materials), ``section`` (checks). The device
+code, all float64 for a footprint may be a millionth of the uv square, in any one unit of length, with the plane z = 0
+and z up:
 
 - ``solid_device``: ``GrooveSet``, pieces and vertices (``Pattern(...).grooves``); whether a point is solid.
 - ``cast_device``: ``cast(grooves, ids, count, p, d, limit, anything, inside)``, the first surface that a ray meets:
@@ -13,6 +14,8 @@ millionth of the uv square, in any one unit of length, with the plane z = 0 and 
   end there.
 - ``near_device``: ``find_near`` gathers those from the grid of ``scratches.grid`` (``Pattern(...).grid``).
 - ``facet_device``: ``FacetMaterial`` and ``facet_radiance``, what the NumPy entry point puts into it.
+- ``scatter_device``, ``walk_device``: ``make_walk(Material, scatter, radiance)`` follows a path from facet to facet,
+  with refraction, and says where and whither it leaves.
 - ``masking_device``: ``seen_fraction`` of one cross-section, alone or periodic.
 
 Contracts. ``ids[0 .. count - 1]`` are the pieces that matter, each once, in any order: at least those ``touches`` says
@@ -26,10 +29,12 @@ and none ends nearby.
 from ...lazy import lazily
 
 _PUBLIC = {
-    "Diffuse": "footprint",
-    "GGX": "footprint",
+    "Diffuse": "facet",
+    "Ends": "walks",
+    "GGX": "facet",
     "Pattern": "pattern",
     "radiance": "footprint",
+    "trace": "walks",
     "visibility": "masking",
 }
 

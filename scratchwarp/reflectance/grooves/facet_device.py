@@ -2,22 +2,24 @@
 
 import warp as wp
 
-from ...optics.fresnel_device import fresnel_conductor
+from ...optics.fresnel_device import fresnel_conductor, fresnel_dielectric
 
 wp.set_module_options({"enable_backward": False})
 
 DIFFUSE = wp.constant(0)
 GLOSSY = wp.constant(1)
 MIRROR = wp.constant(2)
+CLEAR = wp.constant(3)
 
 PI = wp.constant(wp.float64(3.14159265358979323846))
 
 
 @wp.struct
 class FacetMaterial:
-    """Kind (DIFFUSE, GLOSSY, MIRROR), albedo, GGX roughness; index ``eta + i k`` when ``metal`` is 1, else F = 1.
+    """Kind (DIFFUSE, GLOSSY, MIRROR, CLEAR), albedo, GGX roughness.
 
-    ``cos_source``: cosine of the angular radius of the light that a mirror sees.
+    ``metal``: 1, index ``eta + i k``; 2, a dielectric of index ``eta[0]``; 0, F = 1. A CLEAR facet lets through what it
+    does not reflect. ``cos_source``: cosine of the angular radius of the light that a mirror sees.
     """
 
     kind: int
@@ -37,6 +39,8 @@ def facet_fresnel(material: FacetMaterial, cosine: wp.float64) -> wp.vec3d:
         c = float(cosine)
         for i in range(3):
             result[i] = wp.float64(fresnel_conductor(c, float(material.eta[i]), float(material.k[i])))
+    elif material.metal == 2:
+        result = wp.float64(fresnel_dielectric(float(cosine), float(material.eta[0]))) * result
     return result
 
 

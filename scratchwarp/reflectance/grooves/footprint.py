@@ -1,87 +1,19 @@
 """Mean radiance of footprints over grooves, from NumPy."""
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import warp as wp
 from numpy.typing import ArrayLike
 
-from ...optics import Conductor
-from ..vectors import directions, numbers, to_device, vectors
+from ..vectors import directions, to_device, vectors
 from . import footprint_kernels as kernels
-from .facet_device import DIFFUSE, GLOSSY, MIRROR, FacetMaterial
+from .facet import facet_material
 from .pattern import Pattern
+from .walks import follow
 
 CHORDS = ("axis", "exact")
 ROOM = 64  # grooves near a footprint, before a larger list is made for it
-SUN = 0.004652  # [rad] angular radius of the light that a mirror facet sees: the sun's
-
-
-def _color(name: str, value: Any, high: float = np.inf) -> np.ndarray:
-    array = numbers(name, value, 0.0, high)
-    if array.shape not in ((), (3,)):
-        raise ValueError(f"{name} must be a number or three (linear Rec.709), got shape {list(array.shape)}")
-    return array
-
-
-@dataclass(frozen=True)
-class Diffuse:
-    """Lambert facets; ``albedo`` a number or three (linear Rec.709) in [0, 1]."""
-
-    albedo: Any = 1.0
-
-    def __post_init__(self) -> None:
-        _color("albedo", self.albedo, 1.0)
-
-
-@dataclass(frozen=True)
-class GGX:
-    """Rough facets: isotropic GGX of roughness ``alpha`` in [1e-4, 1], separable Smith masking.
-
-    ``fresnel``: None reflects everything (F = 1), or an ``optics.Conductor`` of the "exact" model.
-    """
-
-    alpha: float
-    fresnel: Conductor | None = None
-
-    def __post_init__(self) -> None:
-        if numbers("alpha", self.alpha, 1e-4, 1.0).ndim:
-            raise ValueError(f"alpha must be one number, got {self.alpha!r}")
-        if self.fresnel is not None:
-            _exact("fresnel", self.fresnel)
-
-
-def _exact(name: str, conductor: Any) -> None:
-    if not isinstance(conductor, Conductor) or conductor.model != "exact":
-        raise ValueError(f"{name} must be an optics.Conductor with model 'exact', got {conductor!r}")
-
-
-def facet_material(reflectance: Any) -> tuple[FacetMaterial, int]:
-    """(what the device takes, channels 0 for a scalar result or 3) of a reflectance; ValueError on another one."""
-    made = FacetMaterial()
-    made.albedo, made.eta, made.k = (wp.vec3d(1.0, 1.0, 1.0),) * 3
-    made.alpha, made.cos_source = wp.float64(1.0), wp.float64(np.cos(SUN))
-    metal = None
-    channels = 0
-    if isinstance(reflectance, Diffuse):
-        made.kind = int(DIFFUSE)
-        albedo = np.asarray(reflectance.albedo, np.float64)
-        channels = 3 if albedo.shape == (3,) else 0
-        made.albedo = wp.vec3d(*np.broadcast_to(albedo, 3))
-    elif isinstance(reflectance, GGX):
-        made.kind, made.alpha, metal = int(GLOSSY), wp.float64(reflectance.alpha), reflectance.fresnel
-    elif isinstance(reflectance, Conductor):
-        _exact("reflectance", reflectance)
-        made.kind, metal = int(MIRROR), reflectance
-    else:
-        raise ValueError(f"reflectance must be grooves.Diffuse, grooves.GGX or optics.Conductor, got {reflectance!r}")
-    if metal is not None:
-        made.metal = 1
-        channels = 3 if metal.channels == 3 else 0
-        made.eta = wp.vec3d(*np.broadcast_to(np.asarray(metal.eta, np.float64), 3))
-        made.k = wp.vec3d(*np.broadcast_to(np.asarray(metal.k, np.float64), 3))
-    return made, channels
 
 
 def means(
@@ -132,6 +64,8 @@ def radiance(
     reflectance: Any,
     chord: str = "exact",
     slices: int = 127,
+    bounces: int = 0,
+    samples: int = 256,
 ) -> np.ndarray:
     """Mean radiance of an elliptic footprint over grooves under unit perpendicular irradiance, [...] or [..., 3].
 
@@ -140,15 +74,19 @@ def radiance(
     and the flat ground between, of one ``reflectance``. Light comes from ``omega_i [..., 3]``; a facet of normal m that
     is lit sends f (m . omega_i). Leading dimensions broadcast. Colours give a last axis of 3.
 
-    ``reflectance``: ``Diffuse(albedo)``, ``GGX(alpha)``, or ``optics.Conductor``: mirrors that see the irradiance
-    spread evenly over a disc of the sun's angular radius (``SUN``) about ``omega_i``.
+    ``reflectance``: ``Diffuse(albedo)``, ``GGX(alpha)``, or ``optics.Conductor``, ``optics.Dielectric``: mirrors that
+    see the irradiance spread evenly over a disc of the sun's angular radius (``facet.SUN``) about ``omega_i``.
     ``chord``: where grooves are parallel and do not end nearby, "exact" weights what lies across them by the ellipse's
     area, "axis" evenly over the axis that reaches further, as in the paper. ``slices``: lines over the
-    footprint elsewhere.
+    footprint elsewhere. ``bounces``: light by way of as many further facets, by ``samples`` paths a footprint
+    (``trace``).
 
     Masking, shadowing, crossings, ends and corners are exact along each line (``footprint_device``); grooves outside
     the ellipse that hide or darken it count. Directions below the plane give 0. Source: Bosch et al. 2008, with the
     cosine inside. Raises ValueError naming the argument.
     """
     result, _ = means(g, center, axis1, axis2, omega_o, omega_i, reflectance, chord, slices)
+    if bounces != 0:
+        added, _ = follow(g, center, axis1, axis2, omega_o, omega_i, reflectance, bounces, samples, False)
+        result = result + added
     return result if facet_material(reflectance)[1] == 3 else result[..., 0]

@@ -191,7 +191,7 @@ def test_mirrors_see_a_light_of_the_suns_size():
     gold = optics.Conductor((0.14, 0.37, 1.44), (4.4, 2.77, 1.95))
     g = grooves.Pattern(X90[1:], V)
     got = grooves.radiance(g, [0, 0], [1, 0], [0, 0.3], towards(30, 0), towards(30, 180), gold)
-    disc = np.pi * np.sin(grooves.footprint.SUN) ** 2
+    disc = np.pi * np.sin(grooves.facet.SUN) ** 2
     ground = 1 - 2 * (np.arcsin(0.5) + 0.5 * np.sqrt(0.75)) / np.pi
     np.testing.assert_allclose(got, ground * gold.reflectance(np.cos(np.radians(30))) / disc, rtol=1e-5)
     rough = grooves.radiance(g, [0, 0], [1, 0], [0, 0.3], towards(30, 0), towards(30, 180), grooves.GGX(0.1, gold))
