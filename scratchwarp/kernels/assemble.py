@@ -78,6 +78,7 @@ def kernel_key(scene: Scene, plan: EffectPlan) -> KernelKey:
         sum_coverage=bool(distributions) and on("scratches.sumCoverage"),
         variation=bool(distributions) and on("scratches.variation"),
         masks=bool(distributions) and on("scratches.masks"),
+        tints=bool(distributions) and on("scratches.textured"),
         orientations=bool(distributions) and on("scratches.orientation"),
         light_links=on("lights.links"),
         light_multipliers=on("lights.multipliers"),

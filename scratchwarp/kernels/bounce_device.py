@@ -10,7 +10,7 @@ from ..reflectance.responses.response_device import ResponseArrays, Spot
 from .geometry_device import Geometry, Surface, uv_motion
 from .key import KernelKey
 from .layers_device import make_gather
-from .lobe_device import Lobe, largest, mirrored_at, multiplier, power_heuristic
+from .lobe_device import Lobe, largest, lent_tint, mirrored_at, multiplier, power_heuristic
 from .lobe_terms_device import make_lobe_terms, make_place
 from .material_device import MaterialArrays, MaterialData, cut_out
 from .world_device import LightSet, ScratchSet
@@ -109,6 +109,8 @@ def make_bounce(key: KernelKey, rotated, emission_at):
                             phi = wp.atan2(lobe.wo[1], wp.max(lobe.wo[2], 0.0))
                             lobe.row = table_row(scratches.tables, phi, laid.xi)
                             lobe.sin_theta = -wp.clamp(lobe.wo[0], -1.0, 1.0)
+                            if wp.static(key.tints):
+                                lobe.tint = lent_tint(base.f0, layer.f0, lobe.sin_theta)
                     else:
                         lobe.scale = 1.0 / (1.0 - p)
         if lobe.scratch == 0:
@@ -147,6 +149,8 @@ def make_bounce(key: KernelKey, rotated, emission_at):
                     out.pdf = c.pdf
                     out.phi = c.phi
                     out.weight = c.weight * lobe.scale
+                    if wp.static(key.tints):
+                        out.weight = wp.cw_mul(out.weight, lobe.tint)
         if lobe.scratch != 1:
             b = drawn(responses, lobe, u, v)
             if b.pdf > 0.0:

@@ -17,6 +17,7 @@ class KernelKey:
         preview, measured: UsdPreviewSurface bases, ScratchSurface bases.
         diffuse_scratches: some scratch is a Lambert surface. sum_coverage: coverages of layers add up (Eq. 4).
         variation: scratches of one layer differ. masks, orientations: maps say where layers are, which way they run.
+        tints: scratches take the local reflectance of textured bases.
         light_links: some light picks what it lights.
         light_multipliers: some light's diffuse or specular multiplier is not 1.
         mesh_lights: some geometry is a light. path: indirect bounces.
@@ -48,6 +49,7 @@ class KernelKey:
     sum_coverage: bool = False
     variation: bool = False
     masks: bool = False
+    tints: bool = False
     orientations: bool = False
     light_links: bool = False
     light_multipliers: bool = False

@@ -23,6 +23,7 @@ class Lobe:
     w_specular: float
     table: int
     row: int
+    tint: wp.vec3  # of a table's scratch, where bases are textured: local over tabulated reflectance
     sin_theta: float  # of the incident cone, sin(theta_i) = -sin(theta_o)
     diffuse_share: wp.vec3  # part of the base's value that is diffuse in the direction that was sampled from it
     response: ResponseAt  # in place of ``base``; kind 0: none
@@ -78,3 +79,21 @@ def largest(c: wp.vec3) -> float:
 def luminance(c: wp.vec3) -> float:
     """Y of linear Rec.709."""
     return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]
+
+
+@wp.func
+def lent_tint(local: wp.vec3, tabulated: wp.vec3, sin_theta: float) -> wp.vec3:
+    """What a scratch of a textured base reflects over what its table does, at most 1.
+
+    By Schlick's reflectance at cos(theta), the greatest cosine of incidence that facets see on the cone: exact for
+    facets that face the viewer and as theta goes to pi / 2; a little dark beside them, a little light after several
+    bounces.
+    """
+    result = wp.vec3(1.0, 1.0, 1.0)
+    if tabulated[0] > 0.0:
+        left = wp.pow(1.0 - wp.sqrt(wp.max(1.0 - sin_theta * sin_theta, 0.0)), 5.0)
+        for c in range(3):
+            own = local[c] + (1.0 - local[c]) * left
+            table = tabulated[c] + (1.0 - tabulated[c]) * left
+            result[c] = wp.clamp(own / wp.max(table, 1.0e-6), 0.0, 1.0)
+    return result

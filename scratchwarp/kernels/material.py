@@ -99,6 +99,7 @@ def pack_layer(plan: LayerPlan, curves: Any = None, maps: int = -1) -> LayerData
     d.diffuse = wp.vec3(*plan.diffuse)
     d.response = plan.response
     d.maps = maps
+    d.f0 = wp.vec3(*(plan.f0 or (0.0, 0.0, 0.0)))
     d.varied = int(layer.width_variation > 0.0 or plan.variation is not None)
     wavelength = layer.variation_length or (layer.length if sub.distribution == "spiral" else 0.0)
     d.wave = 1.0 / wavelength if wavelength > 0.0 else 0.0

@@ -268,6 +268,9 @@ def make_kernel(key: KernelKey):
                                 if lobe.scratch == 0:
                                     throughput = wp.cw_mul(throughput, kept)
                             lit = wp.cw_mul(throughput, wp.vec3(received[0], received[1], received[2]))
+                            if wp.static(key.tints):
+                                if lobe.scratch == 1:
+                                    lit = wp.cw_mul(lit, lobe.tint)
                             rays += int(received[3])
                             out = scatter(scratches.tables, scratches.responses, lobe, s, u_base, u_more[1])
                             step = wp.cw_mul(throughput, out.weight)

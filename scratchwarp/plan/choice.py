@@ -77,7 +77,8 @@ class Variation:
 @dataclass(frozen=True, eq=False)
 class LayerPlan:
     """A sublayer to render, its first table or its response (neither: a diffuse scratch), whether the base's diffuse
-    term shows through, and how its scratches differ (None: they are alike)."""
+    term shows through, and how its scratches differ (None: they are alike). ``f0``: reflectance at normal incidence
+    that the table was made with, where a textured base has its own at each point."""
 
     sublayer: Any
     table: int
@@ -86,6 +87,7 @@ class LayerPlan:
     diffuse: tuple[float, float, float] = (0.0, 0.0, 0.0)
     response: int = -1
     variation: Variation | None = None
+    f0: tuple[float, float, float] | None = None
 
     @property
     def lambert(self) -> bool:

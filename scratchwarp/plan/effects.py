@@ -117,6 +117,11 @@ def _variation(f: Facts) -> Answer:
     )
 
 
+def _textured_scratches(f: Facts) -> Answer:
+    found = [p.sublayer.layer.label for p in f.every if p.f0 is not None]
+    return _answer(found, "scratches take the local reflectance of textured bases", "no textured base lends any")
+
+
 def _masks(f: Facts) -> Answer:
     layers = [p.sublayer.layer for p in f.every]
     found = [x.label for x in layers if x.mask_primvar or x.mask_texture >= 0]
@@ -239,6 +244,7 @@ EFFECTS: dict[str, Callable[[Facts], Answer]] = {
     "scratches.sumCoverage": _sum_coverage,
     "scratches.stencil": _stencil,
     "scratches.variation": _variation,
+    "scratches.textured": _textured_scratches,
     "scratches.masks": _masks,
     "scratches.orientation": _orientation,
     **WAVE_EFFECTS,

@@ -14,6 +14,7 @@ from ..scratches.expand import Sublayer
 from . import models
 from .choice import LayerPlan, ResponsePlan, TablePlan, Variation
 from .profiles import cross_section
+from .textured import greatest_f0
 from .theta import RENDERED, theta_model
 from .variation import varied
 
@@ -158,7 +159,7 @@ class _Tables:
         return tuple(self._plans.values())
 
 
-def _complaints(material: Material, layer: Layer, fresnel: Any) -> list[str]:
+def _complaints(material: Material, layer: Layer) -> list[str]:
     """What of a layer cannot be honoured."""
     said = []
     if layer.model == "diffraction" and material.wave is None:
@@ -167,13 +168,17 @@ def _complaints(material: Material, layer: Layer, fresnel: Any) -> list[str]:
         said.append(f"{layer.label}: model {layer.model} is rendered by its profile table for now")
     if layer.model == "normalMap" and layer.normal_map is None:
         said.append(f"{layer.label}: model normalMap has no normalTexture; its profile table is used")
+    return said
+
+
+def _lends_mean(material: Material, layer: Layer, fresnel: Any) -> list[str]:
+    """What a layer cannot know of its textured base."""
     surface = material.surface
     if isinstance(surface, PreviewSurface) and layer.material == "inherit" and isinstance(fresnel, optics.Schlick):
         read = ("specular_color",) if surface.use_specular_workflow else ("diffuse_color", "metallic")
         textured = [name for name in read if isinstance(getattr(surface, name), TextureInput)]
-        if textured:
-            said.append(f"{layer.label}: scratches reflect by the mean of the textured {textured[0]}")
-    return said
+        return [f"{layer.label}: scratches reflect by the mean of the textured {name}" for name in textured[:1]]
+    return []
 
 
 def plan_layers(
@@ -209,7 +214,7 @@ def plan_layers(
             except ValueError as error:
                 raise ValueError(f"{layer.label}: {error}") from None
             fresnel, keeps = models.reflector_of(layer.model, fresnel, keeps)
-            warnings |= dict.fromkeys(_complaints(material, layer, fresnel))
+            warnings |= dict.fromkeys(_complaints(material, layer))
             if fresnel is None:
                 color = layer.diffuse_color
                 if layer.material != "diffuse" and isinstance(material.surface, ScratchSurface):
@@ -217,9 +222,18 @@ def plan_layers(
                 own += [LayerPlan(s, -1, False, max(*color, 0.02), color) for s in subs]
             else:
                 weight = lobe_weight(fresnel)
+                lends = layer.material == "inherit" and isinstance(fresnel, optics.Schlick) and allowed("textured")
+                lent = greatest_f0(scene, material.surface) if lends else None
                 for s in subs:
                     answer = responses.index(layer, _sized(scene, layer, s.curves), fresnel)
-                    table, how = tables.varied(s, fresnel, allowed("variation")) if answer < 0 else (-1, None)
-                    own.append(LayerPlan(s, table, keeps, weight, response=answer, variation=how))
+                    if answer >= 0 or not allowed("textured"):
+                        warnings |= dict.fromkeys(_lends_mean(material, layer, fresnel))
+                    if answer >= 0:
+                        own.append(LayerPlan(s, -1, keeps, weight, response=answer))
+                        continue
+                    f0 = lent[0] if lent else None
+                    table, how = tables.varied(s, optics.Schlick(f0) if f0 else fresnel, allowed("variation"))
+                    stays = lent[1] if lent else keeps
+                    own.append(LayerPlan(s, table, stays, weight, variation=how, f0=f0))
         every.append(tuple(own))
     return tuple(every), tables.plans(), responses.plans(), tuple(warnings)

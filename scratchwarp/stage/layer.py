@@ -1,5 +1,6 @@
 """ScratchLayerAPI, ScratchProfile and ScratchWaveAPI to Layer, Profile and Wave."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -58,6 +59,25 @@ def read_layers(reading: Reading, prim: Usd.Prim, curves: CurveSets, textures: T
     return tuple(sorted(layers, key=lambda layer: (layer.order, layer.name)))
 
 
+def degenerate(distribution: str, sizes: Mapping[str, float]) -> list[str]:
+    """What is to be said of a layer's sizes that leave nothing of it, or make something else of it."""
+    if distribution == "curves":
+        return []
+    if sizes["width"] == 0.0:
+        return ["width is 0; the layer is invisible"]
+    said = []
+    if distribution in ("worley", "random"):
+        if sizes["coverage"] == 0.0 and sizes["density"] == 0.0:
+            return ["coverage and density are 0; the layer is invisible"]
+        if sizes["length"] == 0.0:
+            said.append("length is 0; its scratches are as long as they are wide")
+    elif sizes["pitch"] == 0.0:
+        return ["pitch is 0; the layer is invisible"]
+    if sizes["depth"] == 0.0:
+        said.append("depth is 0; its scratches are flat")
+    return said
+
+
 def layer_primvars(stage: Usd.Stage) -> frozenset[str]:
     """Names of the primvars that any scratch layer of the stage reads."""
     found = set()
@@ -91,6 +111,8 @@ def _layer(reading: Reading, prim: Usd.Prim, name: str, curves: CurveSets, textu
     targets = prim.GetRelationship(f"{_PREFIX}{name}:curves").GetForwardedTargets()
     if tokens["distribution"] == "curves" and not targets:
         reading.warn(where, "distribution is curves but its relationship curves has no target; it has no scratches")
+    for fault in () if tokens["model"] == "normalMap" else degenerate(tokens["distribution"], fields):
+        reading.warn(where, fault)
     tint = prim.GetAttribute(f"{_PREFIX}{name}:diffuseColor")
     extra = tuple((attribute, get(attribute)) for attribute in _EXTRA)
     try:

@@ -79,6 +79,14 @@ def metres_per_unit(path: str | Path, stage: Usd.Stage) -> float:
     return metres
 
 
+def up_axis(path: str | Path, stage: Usd.Stage) -> str:
+    """The stage's upAxis, Y or Z; StageError for any other, which USD has no meaning for."""
+    axis = str(UsdGeom.GetStageUpAxis(stage))
+    if axis not in ("Y", "Z"):
+        raise StageError(f"{path}: upAxis is {axis!r}; author 'Y' or 'Z' and turn the scene's root instead")
+    return axis
+
+
 def _layer(path: str | Path) -> Sdf.Layer:
     text = str(path)
     plain = not text.startswith("anon:") and "[" not in text

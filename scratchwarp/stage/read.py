@@ -17,7 +17,7 @@ from .geometry import Geometry, read_geometry
 from .illuminate import read_lights
 from .layer import layer_primvars
 from .material import Materials
-from .open import gathered_diagnostics, metres_per_unit, open_stage, usd_errors
+from .open import gathered_diagnostics, metres_per_unit, open_stage, up_axis, usd_errors
 from .options import StageSettings, read_settings
 from .place import place_instances
 from .reading import Reading, TextureLoader, Warnings
@@ -109,6 +109,7 @@ def opened(
         raise StageError(f"frame is {frame} and default_time is set; give one of them")
     unsampled = Usd.TimeCode.Default() if default_time else Usd.TimeCode.EarliestTime()
     stage = open_stage(path, session_layer, mask, [k for k in (camera, render_settings) if k])
+    up_axis(path, stage)
     reading = Reading(
         stage=stage,
         time=unsampled if frame is None else Usd.TimeCode(float(frame)),

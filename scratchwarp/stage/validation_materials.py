@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 
 import numpy as np
-from pxr import Usd
+from pxr import Usd, UsdGeom
 
-from .validation_rule import Problem, Rule, layer_attribute, layer_names, value
+from .validation_rule import LAYER_PREFIX, Problem, Rule, layer_attribute, layer_names, value
 
 STATISTICAL = ("worley", "random")
 REGULAR = ("linear", "concentric", "spiral", "crosshatch")
@@ -16,7 +16,7 @@ def check_sizes(prim: Usd.Prim) -> Iterator[Problem]:
     for layer in layer_names(prim):
         get = {
             name: value(layer_attribute(prim, layer, name))
-            for name in ("space", "distribution", "width", "length", "pitch", "density", "coverage")
+            for name in ("space", "distribution", "width", "depth", "length", "pitch", "density", "coverage")
         }
         needed = {"worley": ("width", "length"), "random": ("width", "length"), "curves": ()}
         if get["space"] == "uv":
@@ -42,7 +42,50 @@ def check_sizes(prim: Usd.Prim) -> Iterator[Problem]:
                     "model to 'auto'",
                 )
             continue
+        nothing = get["distribution"] in STATISTICAL and not get["coverage"] and not get["density"]
+        if nothing:
+            yield Problem(
+                layer_attribute(prim, layer, "coverage").GetPath(),
+                f"coverage and density of layer {layer!r} are 0, so the layer is invisible; author one above 0 or "
+                "disable the layer",
+                "warning",
+            )
+        if get["depth"] == 0 and get["width"] and not nothing and get["distribution"] != "curves":
+            yield Problem(
+                layer_attribute(prim, layer, "depth").GetPath(),
+                f"depth of layer {layer!r} is 0, so its scratches are flat; author one above 0, or a profile of shape "
+                "'flat' if that is meant",
+                "warning",
+            )
         yield from check_unread(prim, layer, get["distribution"])
+        yield from check_variation(prim, layer)
+
+
+def check_variation(prim: Usd.Prim, layer: str) -> Iterator[Problem]:
+    """Variations that lack what they vary."""
+    kinds = ("width", "depth", "profile")
+    get = {kind: value(layer_attribute(prim, layer, f"{kind}Variation")) or 0 for kind in kinds}
+    end = prim.GetRelationship(f"{LAYER_PREFIX}{layer}:profileEnd").GetTargets()
+    if bool(get["profile"]) != bool(end):
+        here, missing = ("profileVariation", "profileEnd") if get["profile"] else ("profileEnd", "profileVariation")
+        path = prim.GetPath().AppendProperty(f"{LAYER_PREFIX}{layer}:{here}")
+        yield Problem(path, f"{here} of layer {layer!r} has no effect without {missing}; author both", "warning")
+    length = layer_attribute(prim, layer, "variationLength")
+    if value(length) and not any(get.values()):
+        yield Problem(
+            length.GetPath(),
+            f"variationLength of layer {layer!r} has no effect; author widthVariation, depthVariation or "
+            "profileVariation",
+            "warning",
+        )
+
+
+def check_up(stage: Usd.Stage) -> Iterator[Problem]:
+    """An upAxis that is neither Y nor Z."""
+    axis = str(UsdGeom.GetStageUpAxis(stage))
+    if axis not in ("Y", "Z"):
+        root = stage.GetPseudoRoot().GetPath()
+        yield Problem(root, f"upAxis is {axis!r}; author 'Y' or 'Z' and turn the scene's root instead")
 
 
 def check_unread(prim: Usd.Prim, layer: str, distribution: str) -> Iterator[Problem]:
@@ -137,6 +180,7 @@ def check_settings(prim: Usd.Prim) -> Iterator[Problem]:
 
 
 RULES = (
+    Rule("ScratchUpAxis", "The stage's up axis is Y or Z.", check_up, whole_stage=True),
     Rule("ScratchSizes", "The size and amount of a layer can be meant.", check_sizes, ("UsdShadeMaterial",)),
     Rule("ScratchWave", "Wave optics is applied where asked for, and consistent.", check_wave, ("UsdShadeMaterial",)),
     Rule("ScratchMeasured", "A measured base has its data.", check_measured, ("ScratchMeasuredAPI",)),

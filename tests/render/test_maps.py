@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import scratchwarp as sw
-from scratchwarp.scene import PreviewSurface, Texture
+from scratchwarp.scene import PreviewSurface, Texture, TextureInput
 
 from . import scenes
 from .test_variation import sky
@@ -152,3 +152,57 @@ def test_the_plan_compiles_maps_where_there_are_any():
     assert not sw.make_plan(replace(plain, materials=(rings,), textures=(image([[0.5]]),))).on("scratches.orientation")
     with pytest.raises(ValueError, match="texture 3 is not one of 0"):
         replace(plain, materials=(scenes.scratched(BLACK, mask_texture=3),))
+
+
+@pytest.mark.parametrize("depth", [0.1, 0.3])
+@pytest.mark.parametrize("workflow", [False, True])
+def test_scratches_of_a_textured_base_have_its_local_colour(depth, workflow):
+    """Left half copper, right half grey: each half as on a base of that one colour, within 1 % where light meets the
+    walls once near their normals (aspect 0.1; single reflections up to aspect 0.29), 5 % at 0.3."""
+    colors = np.array([[0.95, 0.6, 0.5], [0.3, 0.35, 0.4]])
+    pixels = np.ones((1, 2, 4), np.float32)
+    pixels[0, :, :3] = colors
+
+    def base(color):
+        if workflow:
+            return PreviewSurface(diffuse_color=(0, 0, 0), specular_color=color, use_specular_workflow=True)
+        return PreviewSurface(diffuse_color=color, metallic=1.0)
+
+    def world(color, textures=()):
+        fields = {"width": 50.0, "depth": 50.0 * depth, "coverage": 1.0, "fresnel": "exact"}
+        material = scenes.scratched(base(color), **fields)
+        placed = [scenes.place(at=(0, 0, -6))]
+        camera = scenes.camera(15.0)
+        return scenes.scene([scenes.plane()], [material], [scenes.dome()], placed, camera, textures=textures)
+
+    read = TextureInput(texture=0, wrap_s="clamp", wrap_t="clamp")
+    textured = world(read, (Texture("/two", pixels),))
+    plan = sw.make_plan(textured)
+    assert plan.on("scratches.textured") and not any("mean of" in w for w in plan.warnings)
+    film = scenes.shoot(textured)["color"]
+    # texture centres are a quarter in: the outer quarters have one colour
+    for half, color in ((film[:, :8], colors[0]), (film[:, -8:], colors[1])):
+        alone = scenes.shoot(world(tuple(color.tolist())))["color"][:, :8]
+        assert half.mean((0, 1)) == pytest.approx(alone.mean((0, 1)), rel=0.01 if depth < 0.2 else 0.05)
+    assert film.max() < 1.0
+
+
+def test_lacquered_wood_shows_its_grain_through_its_scratches():
+    """Scratches in a clear coat over a textured diffuse base: the diffuse part is the base's own where it is, and all
+    in all no more light leaves than arrives."""
+    grain = np.ones((1, 2, 4), np.float32)
+    grain[0, :, :3] = [[0.6, 0.3, 0.1], [0.2, 0.1, 0.05]]
+    wood = PreviewSurface(diffuse_color=TextureInput(texture=0, wrap_s="clamp"), roughness=0.2)
+    material = scenes.scratched(wood, coverage=1.0, fresnel="exact", depth=10.0)
+    placed = [scenes.place(at=(0, 0, -6))]
+    world = scenes.scene(
+        [scenes.plane()], [material], [scenes.dome()], placed, scenes.camera(15.0), textures=(Texture("/w", grain),)
+    )
+    film = scenes.shoot(world)["color"]
+    left, right = film[:, :8].mean((0, 1)), film[:, -8:].mean((0, 1))
+    # what both reflect alike is the coat's; the rest is in proportion to the albedo, within its coupling to the coat
+    coat = (left * grain[0, 1, :3] - right * grain[0, 0, :3]) / (grain[0, 1, :3] - grain[0, 0, :3])
+    assert (coat > 0.03).all() and (coat < 0.09).all() and np.ptp(coat) < 0.02
+    white = replace(wood, diffuse_color=(1.0, 1.0, 1.0))
+    lossless = replace(world, materials=(replace(material, surface=white),), textures=())
+    assert scenes.shoot(lossless)["color"].mean() < 1.003  # noise of 16384 samples

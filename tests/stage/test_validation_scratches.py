@@ -320,7 +320,8 @@ def test_rule(findings, text, severity, rule, words):
 
 def test_every_rule_has_a_case():
     themes = (validation_links, validation_profiles, validation_curves, validation_materials)
-    assert {case[3] for case in CASES} == {rule.name for theme in themes for rule in theme.RULES}
+    elsewhere = {"ScratchUpAxis"}  # test_degenerate: about a stage, not a prim
+    assert {case[3] for case in CASES} | elsewhere == {rule.name for theme in themes for rule in theme.RULES}
 
 
 GOOD = [
