@@ -26,6 +26,8 @@ def load(path: str | os.PathLike[str]) -> Brdf:
     when it is truncated, foreign or holds values that are not finite.
     """
     file = Path(path)
+    if not file.is_file():
+        raise FileNotFoundError(f"{file}: no such file")
     data = file.read_bytes()
     kind = {".bin": "utia", ".binary": "merl", ".bsdf": "rgl"}.get(file.suffix.lower()) or _sniff(data)
     if kind == "utia":
