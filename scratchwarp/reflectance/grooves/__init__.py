@@ -1,9 +1,10 @@
 """Grooves one by one: exact at any distance (Bosch, Pueyo, Merillou, Ghazanfarpour 2008); names load on first use.
 
 From NumPy: ``masking`` (what is seen and lit in a cross-section), ``pattern`` (paths and sections -> pieces),
-``footprint`` (mean radiance of an ellipse), ``walks`` (bounces), ``facet`` (materials), ``section`` (checks). The device
-code, all float64 for a footprint may be a millionth of the uv square, in any one unit of length, with the plane z = 0
-and z up:
+``footprint`` (mean radiance of an ellipse), ``walks`` (bounces), ``facet`` (materials), ``section`` (checks).
+
+The device code, all float64 for a footprint may be a millionth of the uv square, in any one unit of length, with the
+plane z = 0 and z up:
 
 - ``solid_device``: ``GrooveSet``, pieces and vertices (``Pattern(...).grooves``); whether a point is solid.
 - ``cast_device``: ``cast(grooves, ids, count, p, d, limit, anything, inside)``, the first surface that a ray meets:
