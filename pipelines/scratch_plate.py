@@ -44,8 +44,8 @@ def plate(path: Path, texture: Path, repeat: float = 1.0) -> Path:
     material.CreateSurfaceOutput().ConnectToSource(surface.CreateOutput("surface", Sdf.ValueTypeNames.Token))
 
     material.GetPrim().ApplyAPI("ScratchLayerAPI", "map")
-    for key, value in (("model", "normalMap"), ("normalTexture", Sdf.AssetPath(file))):
-        material.GetPrim().GetAttribute(f"scratch:layer:map:{key}").Set(value)
+    material.GetPrim().GetAttribute("scratch:layer:map:model").Set("normalMap")
+    material.GetPrim().GetAttribute("scratch:layer:map:normalTexture").Set(Sdf.AssetPath(file))
 
     mesh = UsdGeom.Mesh.Define(stage, "/Scratched/plate")
     corners = [(-0.5, -0.5, 0.0), (0.5, -0.5, 0.0), (0.5, 0.5, 0.0), (-0.5, 0.5, 0.0)]
