@@ -17,6 +17,7 @@ Files:
     sheet, marks   pictures, lines and words that are changed in place
     sliders        a slider for a number
     looking        an image that refines in a thread while its stage is edited; turning moves camera and lights
+    preview        the 3D view without a window; eye puts a window's eye where the camera is
     web            the same in browsers
     window         all of it together, and the keys of the window
     live_window    the same, its image refining as sliders and the camera are dragged; overlay lays it over the 3D view

@@ -57,13 +57,18 @@ def light_shape(light: Light, middle: np.ndarray, reach: float) -> Any:
 def add(plotter: Any, scene: Scene, aspect: float) -> list[Any]:
     """Draw the frustum and the lights; returns the actors."""
     pv = pyvista()
-    low, high = scene.bounds()
-    middle, eye = 0.5 * (low + high), scene.camera.transform[:3, 3]
-    reach = float(np.linalg.norm(middle - eye)) or 1.0
-    lines = pv.line_segments_from_points(frustum(scene.camera, aspect, 0.35 * reach).reshape(-1, 3))
-    actors = [plotter.add_mesh(lines, color=COLOR, line_width=1.5, lighting=False)]
-    for light in scene.lights:
-        shape = light_shape(light, middle, reach)
-        if shape is not None:
-            actors.append(plotter.add_mesh(shape, color=COLOR, style="wireframe", lighting=False))
-    return actors
+    segments = frustum(scene.camera, aspect, 0.35 * _reach(scene))
+    lines = pv.line_segments_from_points(segments.reshape(-1, 3))
+    return [plotter.add_mesh(lines, color=COLOR, line_width=1.5, lighting=False), *lights(plotter, scene)]
+
+
+def lights(plotter: Any, scene: Scene) -> list[Any]:
+    """Draw the lights that have a place; returns the actors."""
+    middle = 0.5 * np.add(*scene.bounds())
+    shapes = [light_shape(light, middle, _reach(scene)) for light in scene.lights]
+    return [plotter.add_mesh(s, color=COLOR, style="wireframe", lighting=False) for s in shapes if s is not None]
+
+
+def _reach(scene: Scene) -> float:
+    """From the eye to the middle of the scene [m]."""
+    return float(np.linalg.norm(0.5 * np.add(*scene.bounds()) - scene.camera.transform[:3, 3])) or 1.0

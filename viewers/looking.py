@@ -10,7 +10,7 @@ import numpy as np
 
 from scratchwarp.image.quick import eight_bit
 from scratchwarp.render import Film, Session
-from scratchwarp.scene import Control, Settings
+from scratchwarp.scene import Control, Scene, Settings
 from scratchwarp.stage import LiveStage
 
 from .turning import Move, moved
@@ -27,7 +27,7 @@ class Shown:
         picture: version of the pixels; edits: how many changes were made.
         size: of the whole image. samples, spp: a pixel, there and wanted (0 samples: a smaller image).
         redone: what the last change did again. message: what went wrong, "" if nothing.
-        controls: everything that can be turned, with values.
+        controls: everything that can be turned, with values. scene: as it is; None before the first picture.
     """
 
     version: int = 0
@@ -40,6 +40,7 @@ class Shown:
     redone: str = ""
     message: str = "reading tables and compiling the kernel"
     controls: tuple[Control, ...] = ()
+    scene: Scene | None = None
 
     @property
     def finished(self) -> bool:
@@ -224,7 +225,8 @@ class Looking:
     @staticmethod
     def _sizes(session: Session) -> dict[str, Any]:
         assert session.plan is not None
-        return {"size": session.plan.size, "samples": session.samples, "spp": session.plan.settings.spp or 1}
+        spp = session.plan.settings.spp or 1
+        return {"size": session.plan.size, "samples": session.samples, "spp": spp, "scene": session.scene}
 
     def _show(self, **fields: Any) -> None:
         with self._condition:

@@ -13,6 +13,7 @@ from . import curves, directions, image, meshes, profiles, tables
 from .colors import BACKGROUND, TEXT, Shown, shown
 from .cross_sections import Knob, rescratched
 from .display import canvas, check_writable, write
+from .eye import look_through
 from .sheet import Sheet
 from .sliders import slider
 
@@ -137,20 +138,7 @@ class Window:
     def look_through(self) -> None:
         """Put the window's eye where the stage's camera is."""
         self.plotter.subplot(0, 0)
-        seen, matrix = self.plotter.camera, self.scene.camera.transform
-        low, high = self.scene.bounds()
-        eye = matrix[:3, 3]
-        reach = float(np.dot(0.5 * (low + high) - eye, -matrix[:3, 2])) or 1.0
-        seen.position = eye
-        seen.focal_point = eye - matrix[:3, 2] * abs(reach)
-        seen.up = matrix[:3, 1]
-        left, right, bottom, top = self.scene.camera.window(*self._pixels())
-        seen.parallel_projection = self.scene.camera.projection == "orthographic"
-        if seen.parallel_projection:
-            seen.parallel_scale = 0.5 * (top - bottom)
-        else:
-            seen.view_angle = float(np.degrees(np.arctan(top) - np.arctan(bottom)))
-        self.plotter.renderer.reset_camera_clipping_range()
+        look_through(self.plotter, self.scene, self._pixels())
         self.plotter.render()
 
     def render_from_here(self) -> None:

@@ -93,7 +93,8 @@ def pack(
     """Device arrays of ``profiles`` tables, all of one resolution, each of a theta model in ``RENDERED``.
 
     Args:
-        earlier: tables packed before, likewise, and their arrays, which are written over where only some are others.
+        earlier: tables packed before, likewise, and their arrays: what is in them is taken from there, and they are
+            written over where only some tables are others.
         summed: with the sums that integrals along a cone need; ValueError on a table that varies by "gamma" then.
     """
     if earlier is not None and wp.get_device(device).is_cpu and _replaced(tables, *earlier, summed):
@@ -108,15 +109,17 @@ def pack(
     rows: list[np.ndarray] = []
     running: list[np.ndarray] = []
     first_sum = np.zeros(count, np.int32)
+    there = {} if earlier is None else {id(t): k for k, t in enumerate(earlier[0])}
     for k, table in enumerate(tables):
-        one = _packed(table)
+        known = _unpacked(earlier[1], there[id(table)]) if earlier is not None and id(table) in there else None
+        one = known[0] if known else _packed(table)
         mirror[k], cdf[k] = one.mirror, one.cdf
         if one.rows is not None:
             first[k], steps[k], shift[k] = sum(r.shape[1] for r in rows), one.steps, one.shift
             rows.append(one.rows)
         if summed:
             first_sum[k] = sum(r.shape[1] for r in running)
-            running.append(_sums(table, one))
+            running.append(known[1] if known else _sums(table, one))
     every = np.concatenate(rows, axis=1) if rows else np.zeros((1, 1, 1, 3), np.float32)
     packed.slices = wp.array(every, dtype=wp.vec3, device=device)
     packed.mirror = wp.array(mirror, dtype=float, device=device)
@@ -128,6 +131,15 @@ def pack(
     packed.sums = wp.array(every, dtype=wp.vec4, device=device)
     packed.first_sum = wp.array(first_sum, dtype=int, device=device)
     return packed
+
+
+def _unpacked(packed: TableArrays, k: int) -> tuple[_Packed, np.ndarray]:
+    """Table number ``k`` of device arrays, and its running sums."""
+    first, steps, at = int(packed.first.numpy()[k]), int(packed.steps.numpy()[k]), int(packed.first_sum.numpy()[k])
+    count = 0 if first < 0 else steps + 1 if steps else 3
+    rows = packed.slices.numpy()[:, first : first + count] if count else None
+    one = _Packed(packed.mirror.numpy()[k], packed.cdf.numpy()[k], rows, steps, float(packed.shift.numpy()[k]))
+    return one, packed.sums.numpy()[:, at : at + max(count, 1)]
 
 
 def _replaced(tables: Sequence[Any], old: Sequence[Any], packed: TableArrays, summed: bool) -> bool:

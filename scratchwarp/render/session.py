@@ -155,7 +155,8 @@ class Session:
         """(the plan's tables, those of them that had to be simulated)."""
         simulated, tables = [], []
         for t in plan.tables:
-            key = (t.key, t.fresnel is None, t.resolution, t.rays, t.max_bounces, t.theta_model)
+            mixed = tuple((profile.token, share) for profile, share in t.parts)
+            key = (t.key, t.fresnel is None, t.resolution, t.rays, t.max_bounces, t.theta_model, t.source, mixed)
             if key not in self._tables:
                 self._tables[key] = simulate_table(t, plan.settings.threads or 1)
                 simulated.append(t)
@@ -231,7 +232,6 @@ class Session:
 
 def _described(scene: Scene, plan: EffectPlan, built: Assembled) -> str:
     """A hash of what the image depends on besides the parts of ``assemble``."""
-    s = plan.settings
-    decided = (s.spp, s.seed, s.filter_width, s.max_depth, s.integrator, s.max_error, s.cone_taps)
+    decided = replace(plan.settings, threads=None, tile=1)
     on = tuple(name for name, choice in plan.effects.items() if choice.enabled)
     return digest(built.key, scene.camera, scene.origin, scene.options, decided, plan.size, plan.window, on)

@@ -139,6 +139,23 @@ def test_layers_are_switched_and_reordered(server, page):
     assert [layer.name for m in scene.materials for layer in m.layers] == ["coarse", "fine"]
 
 
+def test_the_3d_view_lies_over_the_picture_while_the_camera_is_dragged(page):
+    finished(page)
+    box = page.locator("#picture").bounding_box()
+    page.mouse.move(box["x"] + 100, box["y"] + 100)
+    page.mouse.down()
+    for step in range(100):
+        page.mouse.move(box["x"] + 102 + 2 * step, box["y"] + 100)
+        if page.locator("#preview").is_visible():
+            break
+        time.sleep(0.1)
+    assert page.locator("#preview").is_visible()
+    assert page.evaluate("() => document.getElementById('preview').naturalWidth") == 64
+    page.mouse.up()
+    finished(page)
+    until(page, "() => document.getElementById('preview').hidden")
+
+
 def test_camera_light_pixel_before_and_save(server, page, tmp_path_factory):
     finished(page)
     eye = server.looking.do(lambda live, session: live.scene.camera.transform)

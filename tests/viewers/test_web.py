@@ -228,6 +228,15 @@ def test_a_pixel_is_explained(browser):
     assert sky["prim"] == "" and sky["distance"] is None
 
 
+def test_the_3d_view_is_drawn_where_pyvista_is(server, browser, monkeypatch):
+    pytest.importorskip("pyvista")
+    monkeypatch.delenv("DISPLAY", raising=False)
+    status, headers, content = browser("GET", "/preview")
+    assert status == 200 and headers["Content-Type"] == "image/png" and len(content) > 200
+    monkeypatch.setattr(server._preview, "picture", lambda *_: (_ for _ in ()).throw(ImportError("no pyvista")))
+    assert browser("GET", "/preview")[0] == 404
+
+
 def test_a_camera_that_is_moved_shows_another_picture(server, browser):
     first = finished(server, browser)
     picture = browser("GET", "/picture")[2]

@@ -12,6 +12,7 @@ from urllib.parse import parse_qs, urlsplit
 
 from scratchwarp.image.quick import png
 
+from .. import preview
 from ..looking import Looking, Shown
 from ..turning import Move
 from . import answers
@@ -52,6 +53,7 @@ class WebView(ThreadingHTTPServer):
         self._lock = threading.Lock()
         self._encoded: tuple[int, bytes] = (-1, b"")
         self._before = b""
+        self._preview = preview.Preview()
 
     def handle_error(self, request: Any, client_address: Any) -> None:
         """A browser that went away is no error; anything else is told on stderr."""
@@ -69,6 +71,21 @@ class WebView(ThreadingHTTPServer):
             if self._encoded[0] != shown.picture:
                 self._encoded = (shown.picture, png(shown.pixels))
             return self._encoded[1]
+
+    def preview(self) -> bytes:
+        """The 3D view as PNG; Refused before there is a scene, or where nothing can draw it."""
+        scene, size = self.looking.shown.scene, self.looking.shown.size
+        if scene is None:
+            raise Refused(404, "the stage is not read yet")
+        try:
+            return png(self._preview.picture(scene, size))
+        except ImportError as error:
+            raise Refused(404, str(error)) from None
+
+    def server_close(self) -> None:
+        """Close the socket and the 3D view."""
+        super().server_close()
+        self._preview.close()
 
     @property
     def before(self) -> bytes:
@@ -132,7 +149,7 @@ class Handler(BaseHTTPRequestHandler):
         elif path == "/state":
             shown = server.looking.shown
             told = answers.state(shown) | {
-                "stage": str(server.looking.stage), "target": server.target.name,
+                "stage": str(server.looking.stage), "target": server.target.name, "preview": preview.available(),
                 "controls": [answers.described(c) for c in shown.controls],
             }  # fmt: skip
             self._json(told)
@@ -140,6 +157,8 @@ class Handler(BaseHTTPRequestHandler):
             self._changes(_whole(query, "after"), _whole(query, "edits"))
         elif path == "/picture":
             self._send(200, server.picture(server.looking.shown), "image/png")
+        elif path == "/preview":
+            self._send(200, server.preview(), "image/png")
         elif path == "/before":
             if not server.before:
                 raise Refused(404, "no picture is finished yet")

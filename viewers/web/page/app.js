@@ -27,10 +27,10 @@ function sender(path, merge) {
     }
     busy = false;
   };
-  return Object.assign((body) => {
+  return (body) => {
     waiting = waiting === null ? body : merge(waiting, body);
     if (!busy) flush();
-  }, { pending: () => (busy && waiting ? waiting : null) });
+  };
 }
 
 const sendEdit = sender("/edit", (a, b) => ({ values: { ...a.values, ...b.values } }));
@@ -54,8 +54,26 @@ function showState(state) {
     shown.picture = state.picture;
     at("after").src = `/picture?v=${state.picture}`;
     at("after").dataset.picture = state.picture;
+    if (!dragging) at("preview").hidden = true;
   }
+  if (dragging && state.edits !== solid.edits) showSolid(state.edits);
   at("picture").style.aspectRatio = `${state.size[0]} / ${state.size[1]}`;
+}
+
+// While the camera or a light is dragged the 3D view lies over the picture, which refines below it.
+let dragging = false;
+const solid = { edits: -1, busy: false };
+async function showSolid(edits) {
+  if (solid.busy || !at("solid").checked) return;
+  Object.assign(solid, { edits, busy: true });
+  const image = new Image();
+  image.src = `/preview?edits=${edits}&${Date.now()}`;
+  try {
+    await image.decode();
+    at("preview").src = image.src;
+    at("preview").hidden = !dragging;
+  } catch { at("solid").checked = false; }
+  solid.busy = false;
 }
 
 async function follow() {
@@ -64,7 +82,8 @@ async function follow() {
       const state = await ask(`/changes?after=${shown.version}&edits=${shown.edits}`);
       showState(state);
       if (state.values) {
-        panel.update(state.values, new Set(Object.keys(sendEdit.pending()?.values ?? {})));
+        if (state.message) panel.refused();
+        panel.update(state.values);
       }
       if (state.before) showBefore();
     } catch (error) {
@@ -106,6 +125,7 @@ function drags() {
     if (mode === "pick" || (!dx && !dy)) return;
     const shift = event.shiftKey && mode === "camera";
     const prim = mode === "camera" ? "" : mode;
+    dragging = true;
     sendMove(shift ? { prim, across: dx, along: dy } : { prim, right: Math.PI * dx, up: -Math.PI * (prim ? 1 : -1) * dy });
   });
   picture.addEventListener("pointerup", (event) => {
@@ -114,6 +134,7 @@ function drags() {
       pick((event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height);
     }
     last = null;
+    dragging = false;
   });
   picture.addEventListener("wheel", (event) => {
     event.preventDefault();
@@ -217,6 +238,8 @@ async function start() {
     option.value = light;
     at("mode").insertBefore(option, at("mode").lastElementChild);
   }
+  at("solid").hidden = !state.preview;
+  at("solid").checked = state.preview;
   drags();
   buttons();
   split();

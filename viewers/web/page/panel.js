@@ -3,6 +3,8 @@
 const UNITS = { micrometer: "µm", nanometer: "nm", degree: "°", "1/millimeter^2": "1/mm²" };
 const TITLES = { layer: "Layer", profile: "Profile", wave: "Wave optics", surface: "Surface", light: "Light", camera: "Camera" };
 
+const ECHO = 3000; // milliseconds that a value which was turned here waits for the server to have it
+
 const short = (number) => Number(number.toPrecision(5)).toString();
 const make = (tag, fields = {}, ...children) => {
   const element = Object.assign(document.createElement(tag), fields);
@@ -156,6 +158,7 @@ export class Panel {
     this.elements = new Map();
     this.first = new Map(controls.map((control) => [control.id, JSON.stringify(control.value)]));
     this.folds = new Map();
+    this.sent = new Map();
     const owners = new Map();
     for (const control of controls) {
       const key = `${control.section} ${control.owner}`;
@@ -237,6 +240,7 @@ export class Panel {
 
   turned(id, value) {
     this.controls.get(id).value = value;
+    this.sent.set(id, { value: JSON.stringify(value), until: Date.now() + ECHO });
     this.show(id, value);
     this.change(id, value);
   }
@@ -252,14 +256,19 @@ export class Panel {
     this.elements.get(id)?.classList.toggle("edited", JSON.stringify(this.controls.get(id).value) !== this.first.get(id));
   }
 
-  // Values as the server has them, but for those that are just being turned.
-  update(values, busy) {
+  // Values as the server has them. One that was turned here is left alone until the server has it, or does not take it.
+  update(values) {
     for (const [id, value] of Object.entries(values)) {
-      const control = this.controls.get(id);
-      if (!control || busy.has(id)) continue;
+      const control = this.controls.get(id), sent = this.sent.get(id);
+      if (!control) continue;
+      if (sent && sent.value !== JSON.stringify(value) && Date.now() < sent.until) continue;
+      this.sent.delete(id);
       control.value = value;
       this.show(id, value);
     }
     this.order();
   }
+
+  // What was turned here was refused: the server's values count again.
+  refused() { this.sent.clear(); }
 }
