@@ -101,6 +101,7 @@ class _Tables:
         fits = [t for t in known if t.fresnel is None or not summed or t.theta_model != "gamma"]
         self._chosen = {t.key: (t.theta_model, t.error) for t in fits}
         self._plans: dict[tuple[Any, ...], TablePlan] = {}
+        self._variations: dict[tuple[int, int, str], Any] = {}
 
     def index(self, layer: Layer, curves: int, fresnel: Any) -> int:
         """Number of the table that a layer (or its explicit set ``curves``) reflects by."""
@@ -129,7 +130,12 @@ class _Tables:
         layer, curves = sublayer.layer, sublayer.curves
         sized = _sized(self._scene, layer, curves)
         record = self._scene.curves[curves] if curves >= 0 else None
-        found = varied(sublayer, sized, record, self._max_error) if differ else None
+        found = None
+        if differ:
+            asked = (id(layer), curves, sublayer.distribution)  # the patterns of a layer are alike in this
+            if asked not in self._variations:
+                self._variations[asked] = varied(sublayer, sized, record, self._max_error)
+            found = self._variations[asked]
         if found is None:
             return self.index(layer, curves, fresnel), None
         how, nodes = found

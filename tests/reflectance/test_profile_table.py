@@ -98,3 +98,14 @@ def test_one_table_in_the_place_of_another():
         fresh = profile_table.pack(tables)
         for name in ("mirror", "cdf", "slices", "first", "steps", "shift"):
             np.testing.assert_array_equal(getattr(found, name).numpy(), getattr(fresh, name).numpy(), err_msg=name)
+
+
+def test_tables_among_others_are_taken_over():
+    """More tables than before, in another order, with the sums along a cone: the arrays of all packed anew."""
+    old = [simulated("gamma", None), simulated("quadratic", IRON)]
+    packed = profile_table.pack(old, summed=True)
+    more = [old[1], simulated("table", GLASS), old[0]]
+    found, fresh = (profile_table.pack(more, earlier=e, summed=True) for e in ((old, packed), None))
+    assert found is not packed
+    for name in ("mirror", "cdf", "slices", "sums", "first", "first_sum", "steps", "shift"):
+        np.testing.assert_array_equal(getattr(found, name).numpy(), getattr(fresh, name).numpy(), err_msg=name)
