@@ -28,7 +28,7 @@ class Patch:
 def image(patch, lines, light, at, weights, size, pixels, per_pixel, sigma=60.0):
     """Radiance [pixels, pixels, 3] of the scratches alone, seen from above (orthographic along -z, y up).
 
-    ``lines``: rows (u0, v0, u1, v1, width [um], depth [um]); ``light(points)`` -> list of lights as seen from there, see
+    ``lines``: rows (u0, v0, u1, v1, width [um], depth [um]); ``light(points, frames)``: the lights as seen from there:
     ``sphere``, ``convex`` and ``everywhere``; ``at`` [um], ``weights`` [n, 3]: wavelengths; ``size`` [m] of the view.
     """
     n = pixels * per_pixel
