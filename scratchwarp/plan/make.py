@@ -94,6 +94,8 @@ def make_plan(scene: Scene, settings: Settings | None = None, earlier: EffectPla
     }
     if far:
         numbers["stencils"] = far
+    if decided.model is not None:
+        numbers["model"] = f"{decided.model}, in place of every layer's own"
     return EffectPlan(
         effects=effects,
         settings=decided,

@@ -165,7 +165,9 @@ def test_other_responses_in_the_furnace():
     )
     plan = sw.make_plan(world)
     assert plan.on("base.stencils") and plan.on("scratches.normalMap") and not plan.on("scratches.ashikhminShirley")
-    film = scenes.shoot(world, {"lights.closedForm": False}, width=48, height=24, spp=256, integrator="path", max_depth=6)
+    film = scenes.shoot(
+        world, {"lights.closedForm": False}, width=48, height=24, spp=256, integrator="path", max_depth=6
+    )
     assert film.stats["invalid_samples"] == 0
     assert (film["color"].max(-1) <= 1.0 + 1e-4 + 6 * np.sqrt(film["variance"])).all()
     for number in range(3):
