@@ -4,6 +4,7 @@ import time
 from dataclasses import replace
 
 from ..lights.registry import MODELS
+from ..reflectance.profile_table import table_bytes
 from ..reflectance.responses import RESPONSES
 from ..scene import Layer, Material, Scene, Settings
 from .choice import EffectChoice, EffectPlan, LayerPlan, ResponsePlan, TablePlan
@@ -86,11 +87,16 @@ def make_plan(scene: Scene, settings: Settings | None = None, earlier: EffectPla
     if decided.max_error is not None:
         warnings += (f"max_error {decided.max_error:g} chooses tables, not samples ({decided.spp}), in this version",)
     x0, x1, y0, y1 = window
+    kinds = [(t.resolution, None if t.fresnel is None else t.theta_model) for t in tables]
+    megabytes = 1e-6 * sum(table_bytes(bins, model, summed) for bins, model in kinds)
+    segments = sum(len(c.points) - len(c.counts) for c in scene.curves)
     numbers = {
         "image": f"{size[0]} x {size[1]} pixels, {x1 - x0} x {y1 - y0} rendered, {decided.spp} samples each, "
         f"filter {decided.filter} {decided.filter_width:g} pixels",
         "geometry": f"{scene.triangles} triangles in {len(scene.instances)} instances",
         "tables": f"{len(tables)} to simulate, {sum(len(own) for own in layers)} sets of scratches",
+        "memory": f"{megabytes:.1f} MB of tables; {segments} segments of curves, about 100 bytes each; noise and "
+        "lines take none, however many scratches there are",
     }
     if far:
         numbers["stencils"] = far

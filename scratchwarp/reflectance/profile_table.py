@@ -14,6 +14,15 @@ SUMMED = RENDERED[1:]  # those whose integrals along a cone follow from sums of 
 _LUMINANCE = (0.2126, 0.7152, 0.0722)
 
 
+def table_bytes(resolution: int, varies: str | None, summed: bool = False) -> int:
+    """What one table takes on the device; ``varies``: its theta model, None for a mirror; ``summed``: with sums along
+    the cone."""
+    model = None if varies is None else theta_model(varies)
+    rows = 0 if varies is None else 3 if model is None else len(model.places)
+    cells = resolution * resolution
+    return cells * (4 + 4 + 12 * rows) + (16 * cells * max(rows, 1) if summed else 0)
+
+
 def rows_to_unit_energy(mirror: np.ndarray, weights: np.ndarray, lost: np.ndarray | float = 0.0) -> np.ndarray:
     """Scale each phi_o row of a mirror table so that sum_i mirror[j, i] w_i = 1, or 1 - lost[j].
 

@@ -50,6 +50,7 @@ def test_numbers_and_warnings_follow():
     )
     text = plan.explain()
     assert "image: 64 x 64 pixels" in text and "3 samples each" in text
+    assert "memory: 1.6 MB of tables; 0 segments" in text  # a mirror of 256 x 256 cells, 24 bytes each
     assert f"geometry: {len(S.sphere(8, 16).triangles)} triangles in 1 instances" in text
     assert lines(plan)[-1].startswith("warning: max_error 0.02")
 

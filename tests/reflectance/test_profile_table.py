@@ -109,3 +109,19 @@ def test_tables_among_others_are_taken_over():
     assert found is not packed
     for name in ("mirror", "cdf", "slices", "sums", "first", "first_sum", "steps", "shift"):
         np.testing.assert_array_equal(getattr(found, name).numpy(), getattr(fresh, name).numpy(), err_msg=name)
+
+
+@pytest.mark.parametrize("model", [None, "gamma", "quadratic", "table"])
+@pytest.mark.parametrize("summed", [False, True])
+def test_the_stated_memory_is_what_is_taken(model, summed):
+    """Within what is kept once a table and for the ends of running sums."""
+    if summed and model == "gamma":
+        return
+    fresnel = None if model is None else optics.Dielectric(1.5, "exact")
+    table = profiles.simulate(
+        profiles.shape("vGroove", depth=0.3), resolution=64, rays=16, fresnel=fresnel, theta_model=model or "gamma"
+    )
+    packed = profile_table.pack([table], summed=summed)
+    arrays = (packed.mirror, packed.cdf, packed.slices, packed.sums)
+    taken = sum(a.numpy().nbytes for a in arrays)
+    assert profile_table.table_bytes(64, model, summed) == pytest.approx(taken, rel=0.02)

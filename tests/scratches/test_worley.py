@@ -5,7 +5,9 @@ import pytest
 import warp as wp
 
 from scratchwarp.scratches import worley
+from scratchwarp.scratches.layer_device import LayerData
 from scratchwarp.scratches.worley_device import chord_coverage, count_bits, interval_bits
+from scratchwarp.scratches.worley_device import worley as noise
 
 wp.set_module_options({"enable_backward": False})
 
@@ -114,3 +116,43 @@ def test_bits_count_the_samples_of_an_interval():
 @pytest.mark.parametrize("wanted", [0.001, 0.1, 0.5, 0.9, 0.999])
 def test_threshold_inverts_coverage(wanted):
     assert worley.coverage(worley.threshold(wanted)) == pytest.approx(wanted, abs=1e-6)
+
+
+@wp.kernel
+def pattern(layer: LayerData, q: wp.array(dtype=wp.vec2d), out: wp.array(dtype=float)):
+    i = wp.tid()
+    one = wp.vec2d(wp.float64(1.0), wp.float64(1.0))
+    nought = wp.vec2(0.0, 0.0)
+    out[i] = noise(layer, q[i], one, nought, nought, 0.5).alpha
+
+
+def test_a_hundred_repeats_show_no_tiles():
+    """Units of 1 mm, scratches of 20 by 400 um, coverage at 40,000 points of 10 x 10 units and at the same points whole
+    units further: 4800 scratches there make correlations of 1 / sqrt(4800) = 0.015, the points 0.005. Within a
+    scratch's size the correlation is high, so the test can see one."""
+    d = LayerData()
+    d.cos_a, d.sin_a = 1.0, 0.0
+    d.radius = worley.threshold(0.3)
+    d.inv_length, d.inv_width = 2 * d.radius / 400.0, 2 * d.radius / 20.0
+    d.mean, d.seed = 0.3, 1234
+    rng = np.random.default_rng(0)
+    n = 40000
+    inside = rng.random((n, 2)) * 10000.0
+
+    def covered(shift):
+        out = wp.zeros(n, dtype=float, device="cpu")
+        points = wp.array(inside + shift, dtype=wp.vec2d, device="cpu")
+        wp.launch(pattern, dim=n, inputs=[d, points, out], device="cpu")
+        return out.numpy() - 0.3
+
+    first = covered((0.0, 0.0))
+    variance = (first**2).mean()
+    assert (first * covered((10.0, 0.0))).mean() / variance > 0.7
+    for shift in ((1, 0), (0, 1), (1, 1), (7, 13), (99, 0), (0, 99), (50, 99), (-3, 2), (1e6, 1e6)):
+        assert abs((first * covered(np.array(shift) * 1000.0)).mean()) / variance < 0.08
+    # 10 cm along a line of scratches: some 250 of them, 4.3 sigma over all distances
+    inside = np.stack([np.arange(n) * 2.5, np.full(n, 123.0)], 1)
+    values = covered((0.0, 0.0))
+    power = np.abs(np.fft.rfft(values - values.mean())) ** 2
+    correlation = np.fft.irfft(power)
+    assert np.abs(correlation[1600 : n // 2]).max() < 0.35 * correlation[0]
