@@ -96,7 +96,7 @@ def world(kind):
         name="wear", prim="/mat", profile=Profile(path="/mat/box", shape="rectangle"), distribution="curves",
         curves=(0,), fresnel="mirror",
     )  # fmt: skip
-    material = Material(path="/mat", surface=black, layers=(layer,), wave=Wave(samples=WAVES))
+    material = Material(path="/mat", surface=black, layers=(layer,), wave=Wave(samples=WAVES, sampling="wavelengths"))
     dark = Material(path="/dark", surface=black)
     meshes, instances = [mesh], [scenes.place(0, 0, (0, 0, -1))]
     radiance = np.ones(3)
