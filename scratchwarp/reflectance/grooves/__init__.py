@@ -14,7 +14,7 @@ plane z = 0 and z up:
   material, slices, chord)``; ``touches`` finds the pieces that a footprint needs, ``passes_through`` those that do not
   end there.
 - ``near_device``: ``find_near`` gathers those from the grid of ``scratches.grid`` (``Pattern(...).grid``).
-- ``facet_device``: ``FacetMaterial`` and ``facet_radiance``, what the NumPy entry point puts into it.
+- ``facet_device``: ``FacetMaterials`` (one a path) and ``facet_radiance``, what the NumPy entry point puts into it.
 - ``scatter_device``, ``walk_device``: ``make_walk(Material, scatter, radiance)`` follows a path from facet to facet,
   with refraction, and says where and whither it leaves.
 - ``masking_device``: ``seen_fraction`` of one cross-section, alone or periodic.

@@ -25,6 +25,15 @@ class Crossing:
 
 
 @wp.func
+def path_of(grooves: GrooveSet, piece: int) -> int:
+    """The number of the path that a piece belongs to, as it was given; -1 for the ground."""
+    path = int(-1)
+    if piece >= 0:
+        path = grooves.pieces[piece].path
+    return path
+
+
+@wp.func
 def is_surface(
     grooves: GrooveSet, ids: wp.array(dtype=int), count: int, q: wp.vec3d, n: wp.vec3d
 ) -> bool:  # fmt: skip

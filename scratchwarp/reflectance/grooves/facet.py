@@ -1,5 +1,6 @@
 """What facets of grooves are made of, from NumPy to the device."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,7 +9,7 @@ import warp as wp
 
 from ...optics import Conductor, Dielectric
 from ..vectors import numbers
-from .facet_device import CLEAR, DIFFUSE, GLOSSY, MIRROR, FacetMaterial
+from .facet_device import CLEAR, DIFFUSE, GLOSSY, MIRROR, FacetMaterial, FacetMaterials
 
 SUN = 0.004652  # [rad] angular radius of the light that a mirror facet sees: the sun's
 
@@ -50,6 +51,28 @@ class GGX:
 def _exact(name: str, conductor: Any) -> None:
     if not isinstance(conductor, Conductor) or conductor.model != "exact":
         raise ValueError(f"{name} must be an optics.Conductor with model 'exact', got {conductor!r}")
+
+
+def facet_materials(reflectance: Any, ground: Any, paths: int) -> tuple[FacetMaterials, int]:
+    """(what the device takes, channels) of one reflectance for all grooves or one a path, and of the ground.
+
+    ``ground`` None: that of the grooves, which must then be one for all.
+    """
+    several = isinstance(reflectance, Sequence)
+    if several and len(reflectance) != paths:
+        raise ValueError(f"reflectance must be one for each of the {paths} paths, got {len(reflectance)}")
+    if several and ground is None:
+        raise ValueError("ground must be given where reflectance is one for each path")
+    of = [*(reflectance if several else [reflectance] * paths), reflectance if ground is None else ground]
+    made = {id(r): facet_material(r) for r in of}
+    record: Any = FacetMaterial
+    table = np.zeros(len(of), dtype=record.numpy_dtype())
+    for row, r in enumerate(of):
+        for name in record.vars:
+            table[name][row] = getattr(made[id(r)][0], name)
+    materials = FacetMaterials()
+    materials.of = wp.array(table, dtype=FacetMaterial, device="cpu")
+    return materials, max(channels for _, channels in made.values())
 
 
 def facet_material(reflectance: Any) -> tuple[FacetMaterial, int]:

@@ -31,6 +31,22 @@ class FacetMaterial:
     cos_source: wp.float64
 
 
+@wp.struct
+class FacetMaterials:
+    """Materials of the grooves by the number of their path, that of the ground last."""
+
+    of: wp.array(dtype=FacetMaterial)
+
+
+@wp.func
+def material_of(materials: FacetMaterials, path: int) -> FacetMaterial:
+    """The material of a path; of the ground for -1."""
+    index = path
+    if path < 0:
+        index = materials.of.shape[0] - 1
+    return materials.of[index]
+
+
 @wp.func
 def facet_fresnel(material: FacetMaterial, cosine: wp.float64) -> wp.vec3d:
     """Reflectance at a cosine to the (micro-)facet's normal."""
@@ -52,7 +68,7 @@ def smith_g1(cosine: wp.float64, alpha: wp.float64) -> wp.float64:
 
 
 @wp.func
-def facet_radiance(material: FacetMaterial, n: wp.vec3d, o: wp.vec3d, i: wp.vec3d) -> wp.vec3d:
+def facet_radiance(materials: FacetMaterials, path: int, n: wp.vec3d, o: wp.vec3d, i: wp.vec3d) -> wp.vec3d:
     """Radiance towards ``o`` of a facet of normal ``n`` under unit perpendicular irradiance from ``i``.
 
     That is f (n . i): the cosine is the facet's own. 0 unless both lie above the facet. A mirror sees the irradiance
@@ -61,6 +77,7 @@ def facet_radiance(material: FacetMaterial, n: wp.vec3d, o: wp.vec3d, i: wp.vec3
     zero = wp.float64(0.0)
     one = wp.float64(1.0)
     result = wp.vec3d(zero, zero, zero)
+    material = material_of(materials, path)
     cos_o = wp.dot(n, o)
     cos_i = wp.dot(n, i)
     if cos_o > zero and cos_i > zero:

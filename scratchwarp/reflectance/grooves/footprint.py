@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from ..vectors import directions, to_device, vectors
 from . import footprint_kernels as kernels
-from .facet import facet_material
+from .facet import facet_materials
 from .pattern import Pattern
 from .walks import follow
 
@@ -26,6 +26,7 @@ def means(
     reflectance: Any,
     chord: str = "exact",
     slices: int = 127,
+    ground: Any = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """(``radiance`` as [..., 3], share of each footprint [...] in which a surface was found: 1, or rays were lost)."""
     if not isinstance(g, Pattern):
@@ -34,7 +35,7 @@ def means(
         raise ValueError(f"chord must be one of {', '.join(CHORDS)}, got {chord!r}")
     if not (isinstance(slices, int) and 1 <= slices <= 4096):
         raise ValueError(f"slices must be a whole number in [1, 4096], got {slices!r}")
-    material, _ = facet_material(reflectance)
+    materials, _ = facet_materials(reflectance, ground, g.count)
     plane = [vectors(name, v, 2) for name, v in (("center", center), ("axis1", axis1), ("axis2", axis2))]
     arrays = [*plane, directions("omega_o", omega_o), directions("omega_i", omega_i)]
     lead, inputs = to_device(arrays, [wp.vec2d] * 3 + [wp.vec3d] * 2)
@@ -42,7 +43,7 @@ def means(
     out = wp.zeros(total, dtype=wp.vec3d, device="cpu")
     found = wp.zeros(total, dtype=wp.float64, device="cpu")
     near = wp.zeros((total, min(max(len(g.table), 1), ROOM)), dtype=int, device="cpu")
-    given = [g.grooves, material, slices, CHORDS.index(chord), g.grid.data]
+    given = [g.grooves, materials, slices, CHORDS.index(chord), g.grid.data]
     wp.launch(kernels.means, total, inputs=[*given, near, *inputs], outputs=[out, found], device="cpu")
     result, share = out.numpy(), found.numpy()
     for k in np.flatnonzero(share < 0.0):  # more grooves than there was room for
@@ -66,16 +67,18 @@ def radiance(
     slices: int = 127,
     bounces: int = 0,
     samples: int = 256,
+    ground: Any = None,
 ) -> np.ndarray:
     """Mean radiance of an elliptic footprint over grooves under unit perpendicular irradiance, [...] or [..., 3].
 
     The mean over the ellipse ``center [..., 2]``, half-axis vectors ``axis1``, ``axis2 [..., 2]`` in the plane z = 0
     (the pattern's unit; any of them may be 0) of what is seen through it towards ``omega_o [..., 3]``: groove facets
-    and the flat ground between, of one ``reflectance``. Light comes from ``omega_i [..., 3]``; a facet of normal m that
-    is lit sends f (m . omega_i). Leading dimensions broadcast. Colours give a last axis of 3.
+    and the flat ground between, with their ``reflectance``. Light comes from ``omega_i [..., 3]``; a facet of
+    normal m that is lit sends f (m . omega_i). Leading dimensions broadcast. Colours give a last axis of 3.
 
     ``reflectance``: ``Diffuse(albedo)``, ``GGX(alpha)``, or ``optics.Conductor``, ``optics.Dielectric``: mirrors that
-    see the irradiance spread evenly over a disc of the sun's angular radius (``facet.SUN``) about ``omega_i``.
+    see the irradiance spread evenly over a disc of the sun's angular radius (``facet.SUN``) about ``omega_i``. One
+    for all, or a sequence of one a path; ``ground``: that of the flat ground, where it is another one.
     ``chord``: where grooves are parallel and do not end nearby, "exact" weights what lies across them by the ellipse's
     area, "axis" evenly over the axis that reaches further, as in the paper. ``slices``: lines over the
     footprint elsewhere. ``bounces``: light by way of as many further facets, by ``samples`` paths a footprint
@@ -85,8 +88,8 @@ def radiance(
     the ellipse that hide or darken it count. Directions below the plane give 0. Source: Bosch et al. 2008, with the
     cosine inside. Raises ValueError naming the argument.
     """
-    result, _ = means(g, center, axis1, axis2, omega_o, omega_i, reflectance, chord, slices)
+    result, _ = means(g, center, axis1, axis2, omega_o, omega_i, reflectance, chord, slices, ground)
     if bounces != 0:
-        added, _ = follow(g, center, axis1, axis2, omega_o, omega_i, reflectance, bounces, samples, False)
+        added, _ = follow(g, center, axis1, axis2, omega_o, omega_i, reflectance, bounces, samples, False, ground)
         result = result + added
-    return result if facet_material(reflectance)[1] == 3 else result[..., 0]
+    return result if facet_materials(reflectance, ground, g.count)[1] == 3 else result[..., 0]

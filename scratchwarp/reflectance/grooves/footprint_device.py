@@ -12,7 +12,7 @@ from typing import Any
 
 import warp as wp
 
-from .cast_device import cast
+from .cast_device import cast, path_of
 from .edges_device import EVENTS, Line, gather_edges
 from .solid_device import GrooveSet, Piece
 
@@ -157,9 +157,9 @@ def direction_of_lines(
 def make_footprint_mean(Material: Any, radiance: Any) -> Any:
     """The device function ``mean(grooves, ids, count, footprint, o, i, material, slices, chord) -> FootprintMean``.
 
-    ``radiance(material: Material, n, o, i) -> vec3d`` gives what a facet of normal ``n`` sends to ``o`` under unit
-    perpendicular irradiance from ``i``; ``Material`` is its struct. ``ids[0 .. count - 1]``: every piece that
-    ``touches`` says yes to. ``chord`` 1 is exact, 0 Bosch's larger axis. Below the horizon nothing is seen or lit.
+    ``radiance(material: Material, path, n, o, i) -> vec3d`` gives what a facet of normal ``n`` sends to ``o`` under
+    unit perpendicular irradiance from ``i``; ``Material`` is its struct, ``path`` the groove's number (-1 the ground).
+    ``ids[0 .. count - 1]``: every piece that ``touches`` says yes to. ``chord`` 1 is exact, 0 Bosch's larger axis. Below the horizon nothing is seen or lit.
     """
 
     @wp.func
@@ -229,7 +229,7 @@ def make_footprint_mean(Material: Any, radiance: Any) -> Any:
                                             lit += part
                                     if k < EVENTS:
                                         c = c1
-                            result.radiance += lit * radiance(material, n, o, i)
+                            result.radiance += lit * radiance(material, path_of(grooves, hit.piece), n, o, i)
                 if j < EVENTS:
                     b = b1
         return result
@@ -246,7 +246,7 @@ def make_footprint_mean(Material: Any, radiance: Any) -> Any:
             if count == 0:
                 result.found = one
                 if i[2] > wp.float64(1e-9):
-                    result.radiance = radiance(material, wp.vec3d(zero, zero, one), o, i)
+                    result.radiance = radiance(material, -1, wp.vec3d(zero, zero, one), o, i)
             else:
                 slope_o = slope_of(o)
                 slope_i = wp.vec2d(zero, zero)

@@ -3,20 +3,20 @@
 import warp as wp
 
 from ...scratches.grid_device import Grid
-from .facet_device import FacetMaterial, facet_radiance
+from .facet_device import FacetMaterials, facet_radiance
 from .footprint_device import Footprint, make_footprint_mean, slope_of
 from .near_device import find_near
 from .solid_device import GrooveSet
 
 wp.set_module_options({"enable_backward": False})
 
-footprint_mean = make_footprint_mean(FacetMaterial, facet_radiance)
+footprint_mean = make_footprint_mean(FacetMaterials, facet_radiance)
 
 
 @wp.kernel
 def means(
     grooves: GrooveSet,
-    material: FacetMaterial,
+    materials: FacetMaterials,
     slices: int,
     chord: int,
     grid: Grid,
@@ -45,6 +45,6 @@ def means(
         count = find_near(grooves, grid, f, slope_of(o), slope_i, near[t], near.shape[1])
     found[t] = wp.float64(-1.0)
     if count <= near.shape[1]:
-        mean = footprint_mean(grooves, near[t], count, f, o, i, material, slices, chord)
+        mean = footprint_mean(grooves, near[t], count, f, o, i, materials, slices, chord)
         out[t] = mean.radiance
         found[t] = mean.found

@@ -22,11 +22,16 @@ _STRAIGHT = 1e-12  # sine of the largest turn at a vertex that is none
 
 @dataclass(frozen=True)
 class Groove:
-    """One path without doubled or straight vertices: points [k, 2], its closed section [n, 2], whether it is a loop."""
+    """One path without doubled or straight vertices.
+
+    ``points`` [k, 2]; ``section``: its closed section [n, 2]; ``loop``: whether the last point is the first; ``number``:
+    its place among the paths that were given.
+    """
 
     points: np.ndarray
     section: np.ndarray
     loop: bool
+    number: int
 
 
 def _turn(a: np.ndarray, b: np.ndarray) -> float:
@@ -52,17 +57,17 @@ def _simplified(path: np.ndarray) -> np.ndarray:
     return points[keep]
 
 
-def _joined(paths: list[tuple[np.ndarray, np.ndarray]]) -> list[tuple[np.ndarray, np.ndarray]]:
+def _joined(paths: list[tuple[np.ndarray, np.ndarray, int]]) -> list[tuple[np.ndarray, np.ndarray, int]]:
     """Paths that go straight on where another one of the same section ends, made one."""
     done = list(paths)
     k = 0
     while k < len(done):
-        points, section = done[k]
-        for j, (other, same) in enumerate(done):
+        points, section, number = done[k]
+        for j, (other, same, _) in enumerate(done):
             if j == k or section.shape != same.shape or not np.array_equal(section, same):
                 continue
             if np.array_equal(points[-1], other[0]) and _is_straight(_tangents(points)[-1], _tangents(other)[0]):
-                done[k] = (_simplified(np.concatenate([points, other[1:]])), section)
+                done[k] = (_simplified(np.concatenate([points, other[1:]])), section, number)
                 del done[j]
                 k = -1
                 break
@@ -86,8 +91,8 @@ class Pattern:
     are one path. Raises ValueError naming the argument.
 
     Attributes:
-        grooves: what the device takes (``solid_device.GrooveSet``); table: its pieces as a NumPy table; memory: bytes
-            of both arrays. grid: where the pieces lie (``scratches.grid.StripGrid``, with bytes of its own).
+        count: how many paths were given. grooves: what the device takes (``solid_device.GrooveSet``); table: its pieces
+            as a NumPy table; memory: bytes of pieces and profiles. grid: where the pieces lie (``scratches.grid.StripGrid``, with bytes of its own).
     """
 
     def __init__(self, paths: Sequence[ArrayLike], profiles: Any, ends: str = "cap") -> None:
@@ -98,10 +103,11 @@ class Pattern:
             if p.ndim != 2 or p.shape[1] != 2 or len(p) < 1:
                 raise ValueError(f"paths[{i}] must have shape [k, 2], got {list(p.shape)}")
         sections = self._sections(profiles, len(given))
-        pairs = [(_simplified(p), s) for p, s in zip(given, sections, strict=True)]
-        pairs = _joined([(p, s) for p, s in pairs if len(p) > 1])
+        rows = [(_simplified(p), s, i) for i, (p, s) in enumerate(zip(given, sections, strict=True))]
+        rows = _joined([row for row in rows if len(row[0]) > 1])
+        self.count = len(given)
         self.ends = ends
-        self.paths = tuple(self._groove(p, s) for p, s in pairs)
+        self.paths = tuple(self._groove(*row) for row in rows)
         self.grooves = self._pack()
 
     @staticmethod
@@ -116,20 +122,20 @@ class Pattern:
         return [closed_section(section_points(f"profiles[{i}]", p)) for i, p in enumerate(several)]
 
     @staticmethod
-    def _groove(points: np.ndarray, section: np.ndarray) -> Groove:
+    def _groove(points: np.ndarray, section: np.ndarray, number: int) -> Groove:
         loop = len(points) > 3 and bool(np.array_equal(points[0], points[-1]))
         if loop:
             t = _tangents(points)
             if _is_straight(t[-1], t[0]):  # starts amid a straight stretch: start at a corner
                 points = np.concatenate([points[1:-1], points[1:2]])
-        return Groove(points, section, loop)
+        return Groove(points, section, loop, number)
 
     def _pack(self) -> GrooveSet:
         pieces: list[dict[str, Any]] = []
         vertices: list[np.ndarray] = []
         known: dict[bytes, int] = {}
         total = 0
-        for number, groove in enumerate(self.paths):
+        for groove in self.paths:
             key = groove.section.tobytes()
             if key not in known:
                 known[key] = total
@@ -139,7 +145,7 @@ class Pattern:
                 low, high = groove.section.min(0), groove.section.max(0)
                 pieces.append(
                     {**piece, "first": known[key], "count": len(groove.section), "low": low, "high": high}
-                    | {"path": number}
+                    | {"path": groove.number}
                 )
         z = np.concatenate([v[:, 1] for v in vertices]) if vertices else np.zeros(1)
         x = np.concatenate([v[:, 0] for v in vertices]) if vertices else np.ones(1)

@@ -3,7 +3,7 @@
 import warp as wp
 
 from ...optics.fresnel_device import fresnel_dielectric
-from .facet_device import CLEAR, DIFFUSE, GLOSSY, PI, FacetMaterial, facet_fresnel, smith_g1
+from .facet_device import CLEAR, DIFFUSE, GLOSSY, PI, FacetMaterials, facet_fresnel, material_of, smith_g1
 
 wp.set_module_options({"enable_backward": False})
 
@@ -44,7 +44,9 @@ def visible_facet(n: wp.vec3d, o: wp.vec3d, alpha: wp.float64, u: wp.vec2d) -> w
 
 
 @wp.func
-def scatter_facet(material: FacetMaterial, normal: wp.vec3d, o: wp.vec3d, u: wp.vec2d) -> Scattered:
+def scatter_facet(
+    materials: FacetMaterials, path: int, normal: wp.vec3d, o: wp.vec3d, u: wp.vec2d
+) -> Scattered:  # fmt: skip
     """Where the light seen along ``o`` came from, drawn with ``u`` in [0, 1)^2; the normal points into the air.
 
     Weight 0: from nowhere. A dielectric reflects or lets through by its Fresnel reflectance, from within as well (total
@@ -55,6 +57,7 @@ def scatter_facet(material: FacetMaterial, normal: wp.vec3d, o: wp.vec3d, u: wp.
     two = wp.float64(2.0)
     white = wp.vec3d(one, one, one)
     result = Scattered()
+    material = material_of(materials, path)
     n = normal
     if wp.dot(normal, o) < zero:
         n = -normal

@@ -9,7 +9,7 @@ from typing import Any
 import warp as wp
 
 from ...optics.sobol_device import sobol_2d
-from .cast_device import cast
+from .cast_device import cast, path_of
 from .solid_device import GrooveSet
 
 wp.set_module_options({"enable_backward": False})
@@ -36,8 +36,8 @@ class Walk:
 def make_walk(Material: Any, scatter: Any, radiance: Any) -> Any:
     """The device function ``walk(grooves, ids, count, p, d, material, i, bounces, index, seed) -> Walk``.
 
-    ``p`` in the air above everything, ``d`` (unit) the way to look; ``scatter(material, n, o, u) -> Scattered``;
-    ``radiance(material, n, o, i)`` as in ``make_footprint_mean``, asked at every surface from the second one on that
+    ``p`` in the air above everything, ``d`` (unit) the way to look; ``scatter(material, path, n, o, u) -> Scattered``;
+    ``radiance(material, path, n, o, i)`` as in ``make_footprint_mean``, asked at each surface from the second on that
     ``i`` reaches. ``bounces`` >= 1: after the last one a path that still meets a surface ends with ``left`` 0.
     """
 
@@ -62,14 +62,15 @@ def make_walk(Material: Any, scatter: Any, radiance: Any) -> Any:
             else:
                 q = result.p + hit.distance * result.d
                 n = hit.normal
+                path = path_of(grooves, hit.piece)
                 if result.met > 0 and result.inside == 0 and i[2] > wp.float64(1e-9) and wp.dot(n, i) > zero:
                     lit = cast(grooves, ids, count, q + wp.float64(2.0) * grooves.skin * n, i, far, 1, 0)
                     if lit.distance == far:
-                        result.light += wp.cw_mul(result.weight, radiance(material, n, -result.d, i))
+                        result.light += wp.cw_mul(result.weight, radiance(material, path, n, -result.d, i))
                 result.met += 1
                 if result.met <= bounces:
                     u = sobol_2d(index, result.met, seed)
-                    next = scatter(material, n, -result.d, wp.vec2d(wp.float64(u[0]), wp.float64(u[1])))
+                    next = scatter(material, path, n, -result.d, wp.vec2d(wp.float64(u[0]), wp.float64(u[1])))
                     result.weight = wp.cw_mul(result.weight, next.weight)
                     result.d = next.d
                     if next.through == 1:

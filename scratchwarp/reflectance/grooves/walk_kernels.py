@@ -5,7 +5,7 @@ import warp as wp
 from ...optics.sampling_device import sample_concentric_disk
 from ...optics.sobol_device import sobol_2d
 from ...scratches.grid_device import Grid
-from .facet_device import FacetMaterial, facet_radiance
+from .facet_device import FacetMaterials, facet_radiance
 from .footprint_device import Footprint, slope_of
 from .near_device import find_near
 from .scatter_device import scatter_facet
@@ -15,13 +15,13 @@ from .walk_device import make_walk
 wp.set_module_options({"enable_backward": False})
 
 
-walk = make_walk(FacetMaterial, scatter_facet, facet_radiance)
+walk = make_walk(FacetMaterials, scatter_facet, facet_radiance)
 
 
 @wp.kernel
 def walks(
     grooves: GrooveSet,
-    material: FacetMaterial,
+    materials: FacetMaterials,
     bounces: int,
     samples: int,
     grid: Grid,
@@ -64,7 +64,7 @@ def walks(
             q = sample_concentric_disk(sobol_2d(wp.uint32(k), 0, wp.uint32(t)))
             x = f.center + wp.float64(q[0]) * f.a1 + wp.float64(q[1]) * f.a2 + above * slope
             start = wp.vec3d(x[0], x[1], above)
-            end = walk(grooves, near[t], count, start, -o, material, omega_i[t], bounces, wp.uint32(k), wp.uint32(t))
+            end = walk(grooves, near[t], count, start, -o, materials, omega_i[t], bounces, wp.uint32(k), wp.uint32(t))
             total += end.light
             if k < position.shape[1]:
                 position[t, k] = end.p

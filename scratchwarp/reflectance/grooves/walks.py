@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from ..vectors import directions, to_device, vectors
 from . import walk_kernels as kernels
-from .facet import facet_material
+from .facet import facet_materials
 from .pattern import Pattern
 
 ROOM = 512  # grooves near a footprint that paths are followed among
@@ -38,6 +38,7 @@ class Ends:
 def follow(
     g: Pattern, center: ArrayLike, axis1: ArrayLike, axis2: ArrayLike, omega_o: ArrayLike, omega_i: ArrayLike,
     reflectance: Any, bounces: int, samples: int, keep: bool,
+    ground: Any = None,
 ) -> tuple[np.ndarray, Ends]:  # fmt: skip
     """(light added by bounces [..., 3], path ends, of which there are none unless ``keep``)."""
     if not isinstance(g, Pattern):
@@ -45,7 +46,7 @@ def follow(
     for name, value, most in (("bounces", bounces, 1024), ("samples", samples, 1 << 20)):
         if not (isinstance(value, int) and 1 <= value <= most):
             raise ValueError(f"{name} must be a whole number in [1, {most}], got {value!r}")
-    material, _ = facet_material(reflectance)
+    materials, _ = facet_materials(reflectance, ground, g.count)
     plane = [vectors(name, v, 2) for name, v in (("center", center), ("axis1", axis1), ("axis2", axis2))]
     arrays = [*plane, directions("omega_o", omega_o), directions("omega_i", omega_i)]
     lead, inputs = to_device(arrays, [wp.vec2d] * 3 + [wp.vec3d] * 2)
@@ -56,7 +57,7 @@ def follow(
     rows = [wp.zeros(shape, dtype=wp.vec3d, device="cpu") for _ in range(3)]
     state = wp.zeros(shape, dtype=wp.vec3i, device="cpu")
     reach = wp.float64(REACH * float(g.grooves.top - g.grooves.bottom))
-    given = [g.grooves, material, bounces, samples, g.grid.data, reach, near, *inputs]
+    given = [g.grooves, materials, bounces, samples, g.grid.data, reach, near, *inputs]
     wp.launch(kernels.walks, total, inputs=given, outputs=[light, *rows, state], device="cpu")
     places, ways, weights = (r.numpy().reshape(*lead, shape[1], 3) for r in rows)
     inside, met, left = np.moveaxis(state.numpy().reshape(*lead, shape[1], 3), -1, 0)
@@ -72,6 +73,7 @@ def trace(
     reflectance: Any,
     bounces: int = 8,
     samples: int = 256,
+    ground: Any = None,
 ) -> Ends:
     """Follow what a footprint shows through the grooves until it leaves them; arguments as those of ``radiance``.
 
@@ -82,5 +84,5 @@ def trace(
     than ``REACH`` depths beyond the footprint, or more than ``ROOM`` of them, are taken for solid. Source: Bosch et al.
     2008, section 7, by paths in place of beams. Raises ValueError naming the argument.
     """
-    ends = follow(g, center, axis1, axis2, omega_o, [0.0, 0.0, -1.0], reflectance, bounces, samples, True)
+    ends = follow(g, center, axis1, axis2, omega_o, [0.0, 0.0, -1.0], reflectance, bounces, samples, True, ground)
     return ends[1]

@@ -198,6 +198,20 @@ def test_mirrors_see_a_light_of_the_suns_size():
     assert rough.shape == (3,) and np.all(rough > 0)
 
 
+def test_each_groove_may_have_its_own_material():
+    """Shares of two crossing grooves and the ground, told apart by colour, add up to the whole."""
+    red, green, blue = (grooves.Diffuse(np.eye(3)[k]) for k in range(3))
+    g = grooves.Pattern([[[1, 1], [1, 1]], *X60], V)
+    scene = stacked(4)
+    parts = grooves.radiance(g, *scene, [blue, red, green], ground=blue)
+    np.testing.assert_allclose(parts.sum(-1), grooves.radiance(g, *scene, grooves.Diffuse(1.0)), rtol=1e-12)
+    assert np.all(parts >= 0) and np.all(parts.max(0) > 0)
+    with pytest.raises(ValueError, match="ground"):
+        grooves.radiance(g, *scene, [blue, red, green])
+    with pytest.raises(ValueError, match="reflectance"):
+        grooves.radiance(g, *scene, [blue, red], ground=blue)
+
+
 @pytest.mark.parametrize(
     ("call", "word"),
     [
