@@ -10,7 +10,7 @@ import scratchwarp as sw
 from scratchwarp import optics
 from scratchwarp.plan.layers import reflector
 from scratchwarp.plan.occlusion import is_convex
-from scratchwarp.scene import Layer, Material, PreviewSurface, Profile, RenderOptions, ScratchSurface
+from scratchwarp.scene import Curves, Layer, Material, PreviewSurface, Profile, RenderOptions, ScratchSurface
 
 spec = importlib.util.spec_from_file_location("scenes", Path(__file__).parent.parent / "render" / "scenes.py")
 S = importlib.util.module_from_spec(spec)
@@ -158,3 +158,19 @@ def test_a_profile_that_cannot_be_simulated_is_named():
     bad = Profile(path="/mat/bad", shape="points", points=[[1.0, 0.0], [0.0, 0.0]])
     with pytest.raises(ValueError, match="/mat/bad"):
         sw.make_plan(S.scene([S.sphere(8, 16)], [S.scratched(profile=bad)], [S.dome()]))
+
+
+def test_curves_of_many_depths_take_as_many_tables_as_they_differ():
+    """Explicit scratches of one depth share a table; of depths from 1 to 10 um, tables over the aspects that occur."""
+    points = np.array([[0, 0, 0], [1, 0, 0]] * 3, float)
+
+    def plan(depths):
+        strokes = Curves("/c", points, np.array([2, 2, 2]), np.full(6, 20.0), np.repeat(depths, 2).astype(float))
+        material = S.scratched(distribution="curves", curves=(0,))
+        return sw.make_plan(S.scene([S.plane()], [material], [S.dome()], curves=(strokes,)))
+
+    assert len(plan([3, 3, 3]).tables) == 1 and not plan([3, 3, 3]).on("scratches.variation")
+    varied = plan([1, 4, 10])
+    how = varied.layers[0][0].variation
+    assert varied.on("scratches.variation") and how.explicit and len(varied.tables) == how.aspects > 4
+    assert np.tan(how.low) / 2 == pytest.approx(0.05) and np.tan(how.high) / 2 == pytest.approx(0.5)

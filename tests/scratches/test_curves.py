@@ -6,7 +6,7 @@ import warp as wp
 
 from scratchwarp.scene import Curves
 from scratchwarp.scratches import curves as host
-from scratchwarp.scratches.curves_device import SegmentArrays, curves
+from scratchwarp.scratches.curves_device import CurveHit, SegmentArrays, curves, drawn_curve
 from scratchwarp.scratches.layer_device import LayerData
 
 wp.set_module_options({"enable_backward": False})
@@ -91,3 +91,35 @@ def test_single_points_and_zero_widths_make_no_segment():
     assert len(host.segments(record)[0]) == 0
     record = Curves("/c", np.eye(3), np.array([3]), np.zeros(3), np.ones(3))
     assert len(host.segments(record)[0]) == 0
+
+
+@wp.kernel
+def drawn(
+    segments: SegmentArrays, layer: LayerData, at: wp.array(dtype=float), index: int, out: wp.array(dtype=wp.vec2)
+):
+    i = wp.tid()
+    found = CurveHit()
+    found.segment = index
+    found.at = at[i]
+    hit = drawn_curve(segments, layer, found)
+    out[i] = wp.vec2(hit.along, hit.aspect)
+
+
+def test_a_drawn_segment_knows_its_depth_and_place():
+    """Two polylines of lengths 3 and 2 m, depth over width running along them; the second segment of the first."""
+    points = np.array([[0, 0, 0], [1, 0, 0], [1, 2, 0], [5, 5, 0], [5, 7, 0]], float)
+    widths, depths = np.full(5, 10.0), np.array([1.0, 2.0, 4.0, 5.0, 5.0])
+    record = Curves("/c", points, np.array([3, 2]), widths, depths)
+    number, run, aspects = host.along(record)
+    assert number.tolist() == [0, 0, 1]
+    np.testing.assert_allclose(run * 1e-6, [[0, 1], [1, 2], [0, 2]])
+    np.testing.assert_allclose(aspects, [[0.1, 0.2], [0.2, 0.4], [0.5, 0.5]])
+    arrays, _ = host.pack([record], varied=True)
+    layer = LayerData()
+    layer.wave = 1e-6
+    at = np.array([0.0, 0.25, 1.0], np.float32)
+    out = wp.zeros(3, dtype=wp.vec2, device="cpu")
+    wp.launch(drawn, dim=3, inputs=[arrays, layer, wp.array(at, dtype=float, device="cpu"), 1, out], device="cpu")
+    np.testing.assert_allclose(out.numpy(), [[1.0, 0.2], [1.5, 0.25], [3.0, 0.4]], rtol=1e-5)
+    mixed = Curves("/c", points, np.array([3, 2]), widths, depths, "uv", "uv", "um")
+    assert (host.along(mixed)[2] == -1.0).all()
