@@ -33,8 +33,8 @@ def radii():
 def test_rings_of_a_spiral():
     """xi_1 = 0 everywhere, so that wavelength lambda returns from the ring sin(theta_i) = lambda / pitch. What a pixel
     receives there is the spectrum's density times the light's extent in xi_2, which falls with cos^2: the mean of
-    lambda, by the measured luminance over the rings, within 2 % of what it is by the observer and |D|^2; red and green the
-    same."""
+    lambda, by the measured luminance over the rings, within 2 % of what it is by the observer and |D|^2; red and green
+    the same."""
     image = disc(Wave(coherence_radius=60.0, summation="coherent"))
     r = radii()
     sine = r / np.hypot(r, HEIGHT)
