@@ -106,7 +106,9 @@ def pack(
             written over where only some tables are others.
         summed: with the sums that integrals along a cone need; ValueError on a table that varies by "gamma" then.
     """
-    if earlier is not None and wp.get_device(device).is_cpu and _replaced(tables, *earlier, summed):
+    if earlier is not None and not wp.get_device(device).is_cpu:
+        earlier = None  # what comes back from another device is slower than packing anew
+    if earlier is not None and _replaced(tables, *earlier, summed):
         return earlier[1]
     packed = TableArrays()
     bins = len(tables[0].weights) if tables else 1

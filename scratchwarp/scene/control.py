@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 KINDS = ("number", "whole", "switch", "choice", "pair", "triple", "color", "name", "fixed")
-SECTIONS = ("layer", "profile", "wave", "surface", "light", "camera")
+SECTIONS = ("layer", "profile", "curves", "wave", "measured", "surface", "light", "camera", "settings")
 
 _LONGEST_NAME = 200
 

@@ -70,27 +70,35 @@ _CAMERA = ("focalLength", "exposure", "fStop", "focusDistance")
 
 
 def material_controls(prim: Usd.Prim, time: Usd.TimeCode) -> Iterator[Control]:
-    """Of a material: its scratch layers, their profiles, wave optics, and the constant inputs of its surface."""
-    profiles: dict[Sdf.Path, Usd.Prim] = {}
+    """Of a material: its layers, their profiles and curves, wave optics, a measured base, constants of its surface."""
+    below: dict[tuple[str, Sdf.Path], Usd.Prim] = {}
     for name in layer_names(prim):
         for attribute in _attributes(prim, f"{_LAYER}{name}:"):
             yield control(attribute, "layer", f"{prim.GetPath()} {name}", time)
-        for target in _targets(prim, name):
-            profile = prim.GetStage().GetPrimAtPath(target)
-            if profile and not profile.IsInstanceProxy():
-                profiles[target] = profile
-    for path, profile in profiles.items():
-        for attribute in _attributes(profile, "scratch:"):
-            yield control(attribute, "profile", str(path), time)
-    if "ScratchWaveAPI" in prim.GetAppliedSchemas():
-        for attribute in _attributes(prim, "scratch:wave:"):
-            yield control(attribute, "wave", str(prim.GetPath()), time)
+        for section, relationships in (("profile", ("profile", "profileEnd")), ("curves", ("curves",))):
+            for target in _targets(prim, name, relationships):
+                found = prim.GetStage().GetPrimAtPath(target)
+                if found and not found.IsInstanceProxy():
+                    below[section, target] = found
+    for (section, path), found in below.items():
+        for attribute in _attributes(found, "scratch:"):
+            yield control(attribute, section, str(path), time)
+    for section in ("wave", "measured"):
+        if f"Scratch{section.title()}API" in prim.GetAppliedSchemas():
+            for attribute in _attributes(prim, f"scratch:{section}:"):
+                yield control(attribute, section, str(prim.GetPath()), time)
     yield from _surface_controls(prim, time)
 
 
-def _targets(prim: Usd.Prim, name: str) -> list[Sdf.Path]:
-    """Paths of the profiles that a layer's relationships name."""
-    found = [prim.GetRelationship(f"{_LAYER}{name}:{which}") for which in ("profile", "profileEnd")]
+def settings_controls(prim: Usd.Prim, time: Usd.TimeCode) -> Iterator[Control]:
+    """Of a RenderSettings prim: what the renderer is asked for."""
+    for attribute in _attributes(prim, "scratch:render:"):
+        yield control(attribute, "settings", str(prim.GetPath()), time)
+
+
+def _targets(prim: Usd.Prim, name: str, relationships: tuple[str, ...]) -> list[Sdf.Path]:
+    """Paths of the prims that a layer's relationships name."""
+    found = [prim.GetRelationship(f"{_LAYER}{name}:{which}") for which in relationships]
     return [target for relationship in found if relationship for target in relationship.GetForwardedTargets()]
 
 
@@ -127,6 +135,8 @@ def control(attribute: Usd.Attribute, section: str, owner: str, time: Usd.TimeCo
     default = _plain(definition.GetFallbackValue()) if definition else None
     value = _plain(attribute.Get(time))
     value = default if value is None else value
+    if value is None and kind in ("switch", "pair", "triple", "color"):
+        kind = "fixed"
     low = soft.get("minimum", hard.get("minimum", _RANGES.get(name, (None, None))[0]))
     high = soft.get("maximum", hard.get("maximum", _RANGES.get(name, (None, None))[1]))
     low, high = _ends(low, high, value, default)

@@ -19,6 +19,7 @@ from . import controls
 from .curves import CurveSets
 from .layer import layer_primvars, read_layers, read_wave
 from .open import gathered_diagnostics, usd_errors
+from .options import read_settings, settings_path
 from .read import opened, read_scene
 from .reading import Reading, Warnings
 
@@ -48,7 +49,7 @@ class LiveStage:
         self.scene = replace(
             scene, time=None if frame is None else float(frame), warnings=warnings.lines(), seconds=self.seconds
         )
-        self._stage, self._camera = self._reading.stage, camera
+        self._stage, self._camera, self._wanted = self._reading.stage, camera, options.get("render_settings")
         self._session_layer = options.get("session_layer")
         self._known: dict[str, Control] = {}
         self._edits = Sdf.Layer.CreateAnonymous("look")
@@ -89,7 +90,7 @@ class LiveStage:
         with self.attempt():
             for name, value in checked.items():
                 controls.author(self._attribute(name, known[name].section), value)
-            scene = self._read_again(only_layers=sections <= {"layer", "profile", "wave"})
+            scene = self._read_again(only_layers=sections <= {"layer", "profile", "curves", "wave"})
         self._known = known | {name: replace(known[name], value=value) for name, value in checked.items()}
         return scene
 
@@ -169,6 +170,10 @@ class LiveStage:
         prim = self._stage.GetPrimAtPath(self.scene.camera.path) if self.scene.camera.path else None
         if prim and not prim.IsInstanceProxy():
             yield from controls.camera_controls(prim, time_code)
+        path = settings_path(self._stage, self._wanted)
+        prim = self._stage.GetPrimAtPath(path) if path else None
+        if prim:
+            yield from controls.settings_controls(prim, time_code)
 
     def _attribute(self, name: str, section: str) -> Usd.Attribute:
         path = Sdf.Path(name)
@@ -197,6 +202,7 @@ class LiveStage:
             if only_layers and layer_primvars(self._stage) <= self._kept.primvars:
                 scene = self._with_layers(reading)
             else:
+                self._settings = read_settings(reading, self._wanted)
                 scene, self._kept = read_scene(reading, self._settings, self._camera, self._kept, old.origin)
         kept = ("meshes", "textures", "curves")
         same: dict[str, Any] = {name: _same(getattr(old, name), getattr(scene, name)) for name in kept}
@@ -227,12 +233,12 @@ class LiveStage:
         """Edits made in this block are undone where it raises."""
         kept = Sdf.Layer.CreateAnonymous("kept")
         kept.TransferContent(self._edits)
-        before = (self.scene, self._camera, self._known, self._reading, self.seconds)
+        before = (self.scene, self._camera, self._known, self._reading, self._settings, self.seconds)
         try:
             yield
         except BaseException:
             self._edits.TransferContent(kept)
-            self.scene, self._camera, self._known, self._reading, self.seconds = before
+            self.scene, self._camera, self._known, self._reading, self._settings, self.seconds = before
             raise
 
 

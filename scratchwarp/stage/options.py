@@ -38,7 +38,7 @@ def read_settings(reading: Reading, wanted: str | None) -> StageSettings:
     The first render product overrides what it authors itself. Raises StageError when ``wanted`` is no RenderSettings.
     """
     stage = reading.stage
-    path = wanted or (stage.GetMetadata("renderSettingsPrimPath") if _has_metadata(stage) else "")
+    path = settings_path(stage, wanted)
     if not path:
         return StageSettings(RenderOptions())
     prim = stage.GetPrimAtPath(path) if Sdf.Path.IsValidPathString(path) else None
@@ -61,6 +61,11 @@ def read_settings(reading: Reading, wanted: str | None) -> StageSettings:
         purposes=tuple(map(str, included.Get())) if included.HasAuthoredValue() else None,
         binding_purposes=tuple(map(str, reading.value(prim, "materialBindingPurposes", BINDING_PURPOSES))),
     )
+
+
+def settings_path(stage: Usd.Stage, wanted: str | None) -> str:
+    """Path of the settings prim that is meant, "" where there is none."""
+    return wanted or (stage.GetMetadata("renderSettingsPrimPath") if _has_metadata(stage) else "") or ""
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from pxr import Gf, Sdf, Usd, UsdGeom
 
 from scratchwarp.pipelines import author_demo
 from scratchwarp.scene import Control, StageError
+from scratchwarp.scene.control import SECTIONS
 from scratchwarp.stage import LiveStage, read
 
 DEPTH = "/World/mtl/ball.scratch:layer:hairlines:depth"
@@ -47,7 +48,7 @@ def test_controls_say_what_the_schema_says(live):
     shape = known["/World/mtl/ball/soft.scratch:shape"]
     assert shape.section == "profile" and shape.value == "round" and "vGroove" in shape.choices
     assert known["/World/mtl/ball/measured.inputs:metal"].choices[1] == "aluminium"
-    assert {c.section for c in known.values()} == {"layer", "profile", "surface", "light", "camera"}
+    assert {c.section for c in known.values()} == set(SECTIONS) - {"wave", "measured"}
 
 
 def test_every_layer_attribute_of_the_schema_has_a_control(live):
@@ -174,6 +175,16 @@ def test_saved_edits_open_as_they_were_and_the_stage_stays_as_it_is(live, ball, 
     again.save(tmp_path / "second.usda")
     assert layer(read(tmp_path / "second.usda"), "hairlines").depth == 8.5
     assert hashlib.sha256(ball.read_bytes()).hexdigest() == before
+
+
+def test_render_settings_and_waves_are_turned(live, tmp_path):
+    settings = next(c for c in live.controls() if c.id.endswith("scratch:render:samplesPerPixel"))
+    assert settings.section == "settings" and live.edit({settings.id: 7}).options.spp == 7
+    spoon = LiveStage(author_demo.author(tmp_path, 0.1, ["spoon"])[0])
+    radius = next(c for c in spoon.controls() if c.id.endswith("scratch:wave:coherenceRadius"))
+    assert radius.section == "wave" and radius.units == "micrometer"
+    waves = [m.wave for m in spoon.edit({radius.id: 33.0}).materials if m.wave is not None]
+    assert [w.coherence_radius for w in waves] == [33.0] * len(waves) and waves
 
 
 def test_a_file_of_the_stage_is_never_replaced(live, ball, tmp_path):

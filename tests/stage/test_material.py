@@ -1,6 +1,5 @@
 """Materials: bindings, UsdPreviewSurface networks, textures, ScratchSurface, fallbacks."""
 
-
 import numpy as np
 import pytest
 

@@ -4,8 +4,12 @@ STAGE = """#usda 1.0
 (
     defaultPrim = "World"
     metersPerUnit = 1
+    renderSettingsPrimPath = "/settings"
     upAxis = "Y"
 )
+def RenderSettings "settings"
+{
+}
 def Xform "World"
 {
     def Sphere "ball" (prepend apiSchemas = ["MaterialBindingAPI"])

@@ -119,6 +119,15 @@ def test_dragging_the_depth_slider_changes_the_picture(server, page):
     second.context.close()
 
 
+def test_every_fold_of_the_panel_opens(page):
+    """Controls of every kind are made without an error on the console."""
+    names = page.evaluate("() => [...document.querySelectorAll('details')].map((fold) => fold.dataset.owner)")
+    page.evaluate("() => document.querySelectorAll('details').forEach((fold) => { fold.open = true; })")
+    assert "/settings" in names and f"{METAL}/cut" in names and "/World/lamp" in names
+    until(page, "() => document.querySelectorAll('.control').length > 100")
+    assert page.locator(".control .label").first.get_attribute("title")
+
+
 def test_layers_are_switched_and_reordered(server, page):
     finished(page)
     before = picture(page)

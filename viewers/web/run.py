@@ -20,7 +20,7 @@ def serve(
     port: int = 0,
     save: Path | str | None = None,
     width: int = 480,
-    spp: int = 16,
+    spp: int | None = None,
     browse: bool = False,
     **reading: Any,
 ) -> None:
@@ -29,7 +29,7 @@ def serve(
     Args:
         host, port: address to bind; port 0 is any that is free.
         save: the file that edits are saved to [beside the stage, ``<name>.look.usda``].
-        width, spp: of the image.
+        width, spp: of the image; spp None is the stage's, else 16.
         browse: open the link in this machine's browser.
         reading: keywords of ``scratchwarp.read``.
 

@@ -1,7 +1,7 @@
 // The panel: one control for each attribute that the schema has, made from what the server says of it.
 
 const UNITS = { micrometer: "µm", nanometer: "nm", degree: "°", "1/millimeter^2": "1/mm²" };
-const TITLES = { layer: "Layer", profile: "Profile", wave: "Wave optics", surface: "Surface", light: "Light", camera: "Camera" };
+const TITLES = { layer: "Layer", profile: "Profile", curves: "Curves", wave: "Wave optics", measured: "Measured base", settings: "Render settings", surface: "Surface", light: "Light", camera: "Camera" };
 
 const ECHO = 3000; // milliseconds that a value which was turned here waits for the server to have it
 
@@ -76,9 +76,9 @@ function numberParts(control, element, told) {
     told(control.kind === "whole" ? Math.round(value) : value);
   });
   element.append(slider, box);
-  return (value) => {
-    if (document.activeElement !== slider) slider.value = toSlider(control, value);
-    if (document.activeElement !== box) box.value = short(value);
+  return (value) => { // null: nothing is authored, and the schema has no default
+    if (document.activeElement !== slider) slider.value = value === null ? 0 : toSlider(control, value);
+    if (document.activeElement !== box) box.value = value === null ? "" : short(value);
   };
 }
 
