@@ -14,7 +14,6 @@ from .profiles import cross_section
 
 # How what a scratch covers grows with its width: the ellipses of the noise grow in length, too.
 POWERS = {"worley": 2, "full": 2}
-BLENDED_PARTS = 16
 
 Parts = tuple[tuple[Any, float], ...]
 
@@ -46,8 +45,7 @@ def varied(
     amount = layer.profile_variation if layer.profile_end is not None else 0.0
     angles, shares = _spread(sublayer, record)
     shares = shares / shares.sum()
-    most = BLENDED_PARTS if amount > 0.0 else variation.MOST_PARTS
-    axis = variation.axis(angles, shares, max_error, most)
+    axis = variation.axis(angles, shares, max_error, amount > 0.0)
     if layer.profile.shape == "flat" and amount == 0.0:
         axis = None
     if axis is None and amount <= 0.0:

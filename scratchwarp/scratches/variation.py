@@ -15,7 +15,7 @@ import numpy as np
 
 # Nodes lie this far apart, in angles of the highlight, at the default accuracy; simulated aspects at most PART.
 STEP, PART = math.radians(8.0), math.radians(1.0)
-MOST_NODES, MOST_PARTS = 16, 48
+MOST_NODES, MOST_PARTS = 8, 48
 DEFAULT_ERROR = 0.01
 # A smaller range of highlights than this is no variation.
 SMALLEST = math.radians(0.25)
@@ -45,9 +45,10 @@ def spread(ratio: float, width: float, depth: float, power: int) -> tuple[np.nda
     return np.arctan2(2.0 * ratio * deep, wide).ravel(), share / share.sum()
 
 
-def axis(angles: np.ndarray, shares: np.ndarray, max_error: float | None = None, most: int = MOST_PARTS) -> Axis | None:
+def axis(angles: np.ndarray, shares: np.ndarray, max_error: float | None = None, blended: bool = False) -> Axis | None:
     """Nodes for scratches of these wall angles, so many that neighbours' highlights are ``STEP`` apart at the default
-    accuracy and nearer for a smaller ``max_error``; None where all are alike. ``most``: simulated aspects."""
+    accuracy and nearer for a smaller ``max_error``, up to ``MOST_NODES``; None where all are alike. ``blended``: each
+    has several tables, so half of the nodes and a third of the aspects have to do."""
     order = np.argsort(angles)
     sums = np.cumsum(shares[order])
     # the least and greatest thousandth join their neighbours
@@ -55,8 +56,8 @@ def axis(angles: np.ndarray, shares: np.ndarray, max_error: float | None = None,
     if 2.0 * (high - low) < SMALLEST:
         return None
     step = STEP * min((max_error or DEFAULT_ERROR) / DEFAULT_ERROR, 4.0)
-    count = min(max(math.ceil(2.0 * (high - low) / step) + 1, 2), MOST_NODES)
-    fine = min(max(math.ceil(2.0 * (high - low) / PART), 2 * (count - 1)), most)
+    count = min(max(math.ceil(2.0 * (high - low) / step) + 1, 2), MOST_NODES // 2 if blended else MOST_NODES)
+    fine = min(max(math.ceil(2.0 * (high - low) / PART), 2 * (count - 1)), MOST_PARTS // 3 if blended else MOST_PARTS)
     at = (np.arange(fine) + 0.5) / fine
     place = np.clip((angles - low) / (high - low), 0.0, 1.0)
     held = np.bincount(np.minimum((place * fine).astype(int), fine - 1), shares, minlength=fine)
