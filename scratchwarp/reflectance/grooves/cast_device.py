@@ -7,7 +7,7 @@ corners need no rule of their own.
 
 import warp as wp
 
-from .solid_device import GrooveSet, flat, in_stretch, is_solid
+from .solid_device import GrooveSet, Piece, flat, in_stretch, is_solid
 
 wp.set_module_options({"enable_backward": False})
 
@@ -44,6 +44,27 @@ def is_surface(
 
 
 @wp.func
+def passes_by(
+    piece: Piece, x: wp.float64, z: wp.float64, dx: wp.float64, dz: wp.float64, limit: wp.float64
+) -> bool:  # fmt: skip
+    """Whether the ray (x, z) + t (dx, dz), 0 < t < ``limit``, misses the box about a piece's profile."""
+    # between the heights of the box; a level ray is told by its height alone
+    t0 = wp.float64(0.0)
+    t1 = limit
+    if dz != wp.float64(0.0):
+        low = (piece.low[1] - z) / dz
+        high = (piece.high[1] - z) / dz
+        t0 = wp.max(t0, wp.min(low, high))
+        t1 = wp.min(t1, wp.max(low, high))
+    x0 = x + t0 * dx
+    x1 = x0
+    if dx != wp.float64(0.0):
+        x1 = x + t1 * dx
+    slack = wp.float64(1e-9) * (piece.high[0] - piece.low[0])
+    return t1 < t0 or wp.max(x0, x1) < piece.low[0] - slack or wp.min(x0, x1) > piece.high[0] + slack
+
+
+@wp.func
 def cast(
     grooves: GrooveSet, ids: wp.array(dtype=int), count: int, p: wp.vec3d, d: wp.vec3d, limit: wp.float64,
     anything: int, inside: int,
@@ -73,7 +94,10 @@ def cast(
         r = xy - piece.origin
         x = wp.dot(r, piece.across)
         dx = wp.dot(dxy, piece.across)
-        for j in range(piece.first, piece.first + piece.count - 1):
+        last = piece.first + piece.count - 1
+        if passes_by(piece, x, p[2], dx, d[2], best):
+            last = piece.first
+        for j in range(piece.first, last):
             v = grooves.vertices[j]
             e = grooves.vertices[j + 1] - v
             facing = e[0] * d[2] - e[1] * dx

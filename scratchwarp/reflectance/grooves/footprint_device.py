@@ -159,7 +159,8 @@ def make_footprint_mean(Material: Any, radiance: Any) -> Any:
 
     ``radiance(material: Material, path, n, o, i) -> vec3d`` gives what a facet of normal ``n`` sends to ``o`` under
     unit perpendicular irradiance from ``i``; ``Material`` is its struct, ``path`` the groove's number (-1 the ground).
-    ``ids[0 .. count - 1]``: every piece that ``touches`` says yes to. ``chord`` 1 is exact, 0 Bosch's larger axis. Below the horizon nothing is seen or lit.
+    ``ids[0 .. count - 1]``: every piece that ``touches`` says yes to. ``chord`` 1 is exact, 0 Bosch's
+    larger axis. Below the horizon nothing is seen or lit.
     """
 
     @wp.func

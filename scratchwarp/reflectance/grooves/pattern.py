@@ -24,8 +24,8 @@ _STRAIGHT = 1e-12  # sine of the largest turn at a vertex that is none
 class Groove:
     """One path without doubled or straight vertices.
 
-    ``points`` [k, 2]; ``section``: its closed section [n, 2]; ``loop``: whether the last point is the first; ``number``:
-    its place among the paths that were given.
+    ``points`` [k, 2]; ``section``: its closed section [n, 2]; ``loop``: whether the last point is the first;
+    ``number``: its place among the paths that were given.
     """
 
     points: np.ndarray
@@ -92,7 +92,8 @@ class Pattern:
 
     Attributes:
         count: how many paths were given. grooves: what the device takes (``solid_device.GrooveSet``); table: its pieces
-            as a NumPy table; memory: bytes of pieces and profiles. grid: where the pieces lie (``scratches.grid.StripGrid``, with bytes of its own).
+            as a NumPy table; memory: bytes of pieces and profiles. grid: where the pieces lie
+            (``scratches.grid.StripGrid``, with bytes of its own).
     """
 
     def __init__(self, paths: Sequence[ArrayLike], profiles: Any, ends: str = "cap") -> None:
