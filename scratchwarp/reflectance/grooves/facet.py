@@ -64,12 +64,14 @@ def facet_materials(reflectance: Any, ground: Any, paths: int) -> tuple[FacetMat
     if several and ground is None:
         raise ValueError("ground must be given where reflectance is one for each path")
     of = [*(reflectance if several else [reflectance] * paths), reflectance if ground is None else ground]
-    made = {id(r): facet_material(r) for r in of}
+    made = {key: facet_material(r) for key, r in {id(r): r for r in of}.items()}
     record: Any = FacetMaterial
-    table = np.zeros(len(of), dtype=record.numpy_dtype())
-    for row, r in enumerate(of):
+    rows = np.zeros(len(made), dtype=record.numpy_dtype())
+    for row, (material, _) in enumerate(made.values()):
         for name in record.vars:
-            table[name][row] = getattr(made[id(r)][0], name)
+            rows[name][row] = getattr(material, name)
+    place = {key: row for row, key in enumerate(made)}
+    table = rows[[place[id(r)] for r in of]]
     materials = FacetMaterials()
     materials.of = wp.array(table, dtype=FacetMaterial, device="cpu")
     return materials, max(channels for _, channels in made.values())

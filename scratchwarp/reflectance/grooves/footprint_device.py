@@ -22,6 +22,8 @@ PI = wp.constant(wp.float64(3.14159265358979323846))
 UNIFORM = wp.constant(0)  # weight along a line: even, or by the area of the ellipse over it
 CHORD = wp.constant(1)
 
+PIECES = wp.constant(8)  # a line is cut into as many parts as there are times so many pieces
+MOST = wp.constant(64)  # pieces of one part; where more touch it, all of them are tried
 TRIED = wp.constant(16)  # directions of lines compared
 
 
@@ -166,7 +168,7 @@ def make_footprint_mean(Material: Any, radiance: Any) -> Any:
     @wp.func
     def line_mean(
         grooves: GrooveSet, ids: wp.array(dtype=int), count: int, base: wp.vec2d, step: wp.vec2d, weighting: int,
-        o: wp.vec3d, i: wp.vec3d, material: Material,
+        start: wp.float64, stop: wp.float64, o: wp.vec3d, i: wp.vec3d, material: Material,
     ) -> FootprintMean:  # fmt: skip
         zero = wp.float64(0.0)
         one = wp.float64(1.0)
@@ -181,11 +183,11 @@ def make_footprint_mean(Material: Any, radiance: Any) -> Any:
         view.base = base
         view.step = step
         view.slope = slope_o
-        b = wp.float64(-1.0)
-        while b < one:
-            seen_count = gather_edges(grooves, ids, count, view, b, one, seen_edges)
+        b = start
+        while b < stop:
+            seen_count = gather_edges(grooves, ids, count, view, b, stop, seen_edges)
             for j in range(seen_count + 1):
-                b1 = one
+                b1 = stop
                 if j < seen_count:
                     b1 = seen_edges[j]
                 weight = weight_below(b1, weighting) - weight_below(b, weighting)
@@ -236,6 +238,37 @@ def make_footprint_mean(Material: Any, radiance: Any) -> Any:
         return result
 
     @wp.func
+    def whole_line(
+        grooves: GrooveSet, ids: wp.array(dtype=int), count: int, base: wp.vec2d, step: wp.vec2d, weighting: int,
+        o: wp.vec3d, i: wp.vec3d, slope_i: wp.vec2d, material: Material,
+    ) -> FootprintMean:  # fmt: skip
+        """``line_mean`` in parts, each with the pieces alone that touch it."""
+        one = wp.float64(1.0)
+        result = FootprintMean()
+        mine = wp.zeros(shape=MOST, dtype=int)
+        parts = 1 + count / PIECES
+        part = Footprint()
+        part.a1 = step / wp.float64(parts)
+        for k in range(parts):
+            start = wp.float64(2 * k) / wp.float64(parts) - one
+            stop = wp.float64(2 * k + 2) / wp.float64(parts) - one
+            part.center = base + wp.float64(0.5) * (start + stop) * step
+            n = int(0)
+            for a in range(count):
+                if touches(grooves, grooves.pieces[ids[a]], part, slope_of(o), slope_i):
+                    if n < MOST:
+                        mine[n] = ids[a]
+                    n += 1
+            some = FootprintMean()
+            if n <= MOST:
+                some = line_mean(grooves, mine, n, base, step, weighting, start, stop, o, i, material)
+            else:
+                some = line_mean(grooves, ids, count, base, step, weighting, start, stop, o, i, material)
+            result.radiance += some.radiance
+            result.found += some.found
+        return result
+
+    @wp.func
     def mean(
         grooves: GrooveSet, ids: wp.array(dtype=int), count: int, f: Footprint, o: wp.vec3d, i: wp.vec3d,
         material: Material, slices: int, chord: int,
@@ -264,10 +297,10 @@ def make_footprint_mean(Material: Any, radiance: Any) -> Any:
                     m = first.across
                     reach = half_extent(f, m)
                     if chord == 1:
-                        result = line_mean(grooves, ids, count, f.center, reach * m, CHORD, o, i, material)
+                        result = whole_line(grooves, ids, count, f.center, reach * m, CHORD, o, i, slope_i, material)
                     else:
                         reach = wp.max(wp.abs(wp.dot(f.a1, m)), wp.abs(wp.dot(f.a2, m)))
-                        result = line_mean(grooves, ids, count, f.center, reach * m, UNIFORM, o, i, material)
+                        result = whole_line(grooves, ids, count, f.center, reach * m, UNIFORM, o, i, slope_i, material)
                 else:
                     w = direction_of_lines(grooves, ids, count, f, slope_o, slope_i)
                     along = w[0] * f.a1 + w[1] * f.a2
@@ -277,7 +310,7 @@ def make_footprint_mean(Material: Any, radiance: Any) -> Any:
                         share = wp.float64(2.0) * wp.sin(angle) * wp.sin(angle) / wp.float64(slices + 1)
                         base = f.center + wp.cos(angle) * across
                         step = wp.sin(angle) * along
-                        part = line_mean(grooves, ids, count, base, step, UNIFORM, o, i, material)
+                        part = whole_line(grooves, ids, count, base, step, UNIFORM, o, i, slope_i, material)
                         result.radiance += share * part.radiance
                         result.found += share * part.found
         return result
