@@ -56,7 +56,8 @@ function showState(state) {
     at("after").dataset.picture = state.picture;
     if (!dragging) at("preview").hidden = true;
   }
-  if (dragging && state.edits !== solid.edits) showSolid(state.edits);
+  // the first one, hidden, opens the 3D view, so that a drag need not wait for it
+  if (state.samples ? solid.edits < 0 : dragging && state.edits !== solid.edits) showSolid(state.edits);
   at("picture").style.aspectRatio = `${state.size[0]} / ${state.size[1]}`;
 }
 
@@ -161,7 +162,8 @@ const make = (tag, text = "", ...children) => {
 };
 const row = (head, ...cells) => make("tr", "", make("th", head), ...cells.map((cell) => make("td", "", cell)));
 const digits = (n, count = 4) => (n === null ? "∞" : Number(n.toPrecision(count)).toString());
-const color = (rgb) => rgb.map((c) => digits(c, 3)).join("  ");
+// parts are differences of sums: what is left of nothing is nothing
+const color = (rgb) => rgb.map((c) => (Math.abs(c) < 1e-5 ? "0" : digits(c, 3))).join("  ");
 const length = (um) => (um >= 1000 ? `${digits(um / 1000)} mm` : `${digits(um)} µm`);
 
 function showPixel(pixel) {
