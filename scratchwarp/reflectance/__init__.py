@@ -2,7 +2,8 @@
 
 ``base`` the surface under the scratches (``base_device``, ``base_energy_device``, and ``base_arrays_device`` over
 arrays); ``profile_table`` the mirror cone of a scratch profile; ``texture`` what varies over a surface; ``vectors``
-checks of what NumPy entry points are given. ``mdf``, ``diffraction``, ``stencils``, ``measured``: folders of their own.
+checks of what NumPy entry points are given. ``mdf``, ``diffraction``, ``stencils``, ``measured``: folders of their own;
+``responses`` those of them, and others, that stand in for a table or a base in the renderer.
 """
 
 from ..lazy import lazily

@@ -14,12 +14,16 @@ from .texture import Textures
 def read_normal_map(
     reading: Reading, where: str, get: Callable[[str], Any], textures: Textures | None
 ) -> NormalMap | None:
-    """The map of a layer whose attributes ``get`` reads; None without an image.
+    """The map of a layer of model normalMap whose attributes ``get`` reads; None without an image.
 
-    Raises ValueError on values that none can have.
+    One that another model leaves unread gives a warning that names ``where``. Raises ValueError on values that none can
+    have.
     """
     asset = get("normalTexture")
     if textures is None or not (asset and asset.path):
+        return None
+    if str(get("model")) != "normalMap":
+        reading.warn(where, "its normalTexture is read by model normalMap alone")
         return None
     index = textures.index(where, asset, "raw")
     if index < 0:

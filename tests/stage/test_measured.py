@@ -83,6 +83,10 @@ def test_normal_maps(material, tmp_path):
     np.testing.assert_allclose(scene.textures[record.texture].pixels[..., 2], 1.0)
     plan = sw.make_plan(scene)
     assert plan.on("scratches.normalMap") and plan.on("scratches.full") and plan.tables == () and not plan.warnings
+    material.GetAttribute("scratch:layer:fine:model").Set("table")
+    unread = read(material)
+    assert unread.textures == () and any("normalTexture" in w and "fine" in w for w in unread.warnings)
+    material.GetAttribute("scratch:layer:fine:model").Set("normalMap")
     material.GetAttribute("scratch:layer:fine:normalTexture").Clear()
     bare = sw.make_plan(read(material))
     assert not bare.on("scratches.normalMap") and len(bare.tables) == 1
