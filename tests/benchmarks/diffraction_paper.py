@@ -29,8 +29,10 @@ def bound(q, k, width, sigma):
     if q == 0.0:
         return 0.0
     x = k * width * q
-    return math.sqrt(math.pi) / (sigma * k) * (
-        2.0 * si(x) / (k * width) - 4.0 * math.sin(0.5 * x) ** 2 / (k * k * width * width * q)
+    return (
+        math.sqrt(math.pi)
+        / (sigma * k)
+        * (2.0 * si(x) / (k * width) - 4.0 * math.sin(0.5 * x) ** 2 / (k * k * width * width * q))
     )
 
 
@@ -147,4 +149,46 @@ def polygons(vertices, wo, azimuth, width, depth, sigma, offset, wavelength):
         out[i] = polygon(
             vertices[i], wo[i, 0], wo[i, 1], wo[i, 2], azimuth[i], width[i], depth[i], sigma, offset[i], wavelength[i]
         )
+    return out
+
+
+@numba.njit
+def sampled(center, radius, wo, azimuth, width, depth, sigma, angle, offset, a1, a2, wavelength, samples, seed):
+    """Spheres and elliptic footprints by random directions in the cap and points in the ellipse: the mean of |S|^2
+    cos(theta) / (A_C lambda^2) over both, times the solid angle; ``offset`` to the centre of each footprint."""
+    np.random.seed(seed)
+    out = np.empty(len(radius))
+    for i in range(len(out)):
+        c, s = math.cos(azimuth[i]), math.sin(azimuth[i])
+        d = math.sqrt(center[i, 0] ** 2 + center[i, 1] ** 2 + center[i, 2] ** 2)
+        p1, p2, p3 = center[i, 0] / d, center[i, 1] / d, center[i, 2] / d
+        sine2 = (radius[i] / d) ** 2
+        turn = 1.0 - math.sqrt(1.0 - sine2)
+        sign = math.copysign(1.0, p3)
+        a = -1.0 / (sign + p3)
+        b = p1 * p2 * a
+        t1, t2, t3 = 1.0 + sign * p1 * p1 * a, sign * b, -sign * p1
+        b1, b2, b3 = b, sign + p2 * p2 * a, -p2
+        k = 2.0 * math.pi / wavelength[i]
+        total = 0.0
+        for _ in range(samples):
+            z = turn * np.random.random()
+            around = 2.0 * math.pi * np.random.random()
+            flat = math.sqrt(z * (2.0 - z))
+            x, y = flat * math.cos(around), flat * math.sin(around)
+            w1 = p1 * (1.0 - z) + x * t1 + y * b1
+            w2 = p2 * (1.0 - z) + x * t2 + y * b2
+            w3 = p3 * (1.0 - z) + x * t3 + y * b3
+            far, where = math.sqrt(np.random.random()), 2.0 * math.pi * np.random.random()
+            across = far * (-a1 * math.cos(where) * math.sin(angle[i]) + a2 * math.sin(where) * math.cos(angle[i]))
+            if w3 > 0.0:
+                xi1 = (w1 + wo[i, 0]) * c + (w2 + wo[i, 1]) * s
+                xi2 = (w2 + wo[i, 1]) * c - (w1 + wo[i, 0]) * s
+                e = (sigma * k * xi1) ** 2 + ((offset[i] - across) / sigma) ** 2
+                if e < 80.0:
+                    t = math.pi * width[i] * xi2 / wavelength[i]
+                    lobe = 1.0 if abs(t) < 1e-8 else math.sin(t) / t
+                    total += w3 * lobe * lobe * math.exp(-e)
+        factor = 2.0 * (width[i] / wavelength[i]) ** 2 * 4.0 * math.sin(k * depth[i]) ** 2
+        out[i] = factor * 2.0 * math.pi * turn * total / samples
     return out
