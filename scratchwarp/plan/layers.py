@@ -179,7 +179,8 @@ def _complaints(material: Material, layer: Layer) -> list[str]:
     if layer.model == "groove":
         said.append(f"{layer.label}: model {layer.model} is rendered by its profile table for now")
     if layer.model == "normalMap" and layer.normal_map is None:
-        said.append(f"{layer.label}: model normalMap has no normalTexture, which is read of layers of that model alone; its table is used")
+        why = "no normalTexture, which is read of layers of that model alone"
+        said.append(f"{layer.label}: model normalMap has {why}; its table is used")
     return said
 
 
