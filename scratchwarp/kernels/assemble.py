@@ -203,7 +203,7 @@ def assemble(
     light_set.links = wp.array(links, dtype=wp.uint8, device=device)
     light_set.arrays = packed.arrays
     light_set.taps = plan.settings.cone_taps or 1
-    light_set.tap_width = 0.5 / (plan.settings.spp or 1)
+    light_set.tap_width = 0.125 / (plan.settings.spp or 1)
     scratch_set.layers, scratch_set.segments = stuff.layers, strokes
     last = parts.last("tables")
     earlier = None if last is None or last[0][0] != key.closed_form else (last[0][1:], last[1])
