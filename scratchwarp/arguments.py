@@ -198,7 +198,7 @@ _EXAMPLES = {
     "validate": "scratchwarp validate ball.usda\n  scratchwarp validate ball.usda --strict --json",
     "view": "scratchwarp view ball.usda\n  scratchwarp view ball.usda --screenshot look.png --frame 12\n"
     "  scratchwarp view ball.usda --web --port 8765\n"
-    "  scratchwarp view ball.usda --profile hairlines\n  scratchwarp view quartic\n"
+    "  scratchwarp view ball.usda --profile hairlines\n  scratchwarp view quartic\n  scratchwarp view lobe\n"
     "  scratchwarp view cloth.bin --screenshot cloth.png",
     "fit": "scratchwarp fit cloth.bin cloth.usda --report cloth\n  scratchwarp fit paint.binary paint.usda --modes 1\n"
     "  scratchwarp fit kettle.usda far.usda --material brass   # scratches seen from far away",
@@ -283,7 +283,10 @@ def parser() -> argparse.ArgumentParser:
     made = command("view", "show a stage, its scratches, profiles and tables in a window")
     for title, keys in (("keys", KEYS), ("keys with --profile", PROFILE_KEYS), ("keys on a BRDF", BRDF_KEYS)):
         made.epilog = "\n".join([f"{made.epilog}\n", f"{title}:", *(f"  {key}  {what}" for key, what in keys.items())])
-    made.add_argument("stage", metavar="STAGE|SHAPE|BRDF", help="USD file, name of a shape, or file of a measurement")
+    made.add_argument(
+        "stage", metavar="STAGE|SHAPE|BRDF|lobe",
+        help="USD file, name of a shape, file of a measurement, or the word lobe: how one fine scratch diffracts",
+    )  # fmt: skip
     made.add_argument(
         "--profile", nargs="?", const="", metavar="LAYER", help="a layer's profile alone, with sliders [first]"
     )

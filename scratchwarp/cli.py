@@ -188,6 +188,11 @@ def view(args: Command) -> int:
             raise UsageError("a measured BRDF has neither frames nor cameras nor profiles; give --screenshot alone")
         viewers.view_brdf(args.stage, args.screenshot)
         return 0
+    if args.stage == "lobe":
+        if given or args.profile is not None or args.depth is not None or args.frame or args.camera or args.web:
+            raise UsageError("the lobe of one scratch has neither a stage nor profiles; give --screenshot alone")
+        viewers.view_lobe(args.screenshot)
+        return 0
     if args.web:
         if args.profile is not None or args.screenshot or args.depth is not None:
             raise UsageError("--web shows a whole stage; leave out --profile, --depth and --screenshot")

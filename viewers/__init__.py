@@ -9,6 +9,7 @@ Files:
     tables         each layer's simulated table
     cross_sections profiles whose numbers can be turned
     live_profile   one of them in a window of its own, with sliders
+    live_wave      the lobe of one scratch that diffracts, with sliders for it and the light
     live_brdf      a measured BRDF beside the stencils fitted to it, with sliders
     lobes          reflectance as a surface in 3D
     image          the rendered image
@@ -28,7 +29,7 @@ Files:
 from pathlib import Path
 from typing import Any
 
-__all__ = ["BRDFS", "BRDF_KEYS", "KEYS", "PROFILE_KEYS", "view", "view_brdf", "view_profile", "view_web"]
+__all__ = ["BRDFS", "BRDF_KEYS", "KEYS", "PROFILE_KEYS", "view", "view_brdf", "view_lobe", "view_profile", "view_web"]
 
 # key -> what it does in the window, as --help prints it.
 KEYS = {
@@ -97,6 +98,18 @@ def view_profile(source: Path | str, screenshot: Path | str | None = None, **opt
     from .live_profile import view as show
 
     show(source, screenshot, **options)
+
+
+def view_lobe(screenshot: Path | str | None = None, **options: Any) -> None:
+    """Show how one fine scratch diffracts: its radiance over the hemisphere of viewers, with sliders for width, depth,
+    coherence radius and a spherical light. ``options``: size of the window. Raises ImportError and OSError as ``view``.
+    """
+    from .display import pyvista
+
+    pyvista()
+    from .live_wave import view as show
+
+    show(screenshot, **options)
 
 
 def view(stage_path: Path | str, screenshot: Path | str | None = None, **options: Any) -> None:

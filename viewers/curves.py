@@ -1,5 +1,10 @@
-"""Explicit scratches, as lines on the surfaces of the materials whose layers draw them."""
+"""Explicit scratches, as lines on the surfaces of the materials whose layers draw them.
 
+Those that diffract, many and fine, are coloured by their direction in space: x red, y green, z blue. The others take
+the colour of their layer.
+"""
+
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -9,6 +14,8 @@ from scratchwarp.scene import Curves, Instance, Scene
 from .colors import shown
 from .display import pyvista
 from .meshes import world_corners
+
+STEP = 0.004  # of the uv square, between the points of scratches that diffract
 
 
 def on_surface(scene: Scene, instance: Instance, curves: Curves) -> tuple[np.ndarray, np.ndarray]:
@@ -42,20 +49,53 @@ def polylines(scene: Scene, curves: Curves, material: int) -> list[np.ndarray]:
     return lines
 
 
+def refined(curves: Curves, step: float = STEP) -> Curves:
+    """uv curves with points between, at most ``step`` apart, so that they follow the surface; others as they are."""
+    if curves.space != "uv" or not len(curves.points):
+        return curves
+    last = np.zeros(len(curves.points), bool)
+    last[np.cumsum(curves.counts) - 1] = True
+    ahead = np.roll(curves.points, -1, axis=0) - curves.points
+    parts = np.where(last, 1, np.maximum(np.ceil(np.linalg.norm(ahead, axis=1) / step), 1)).astype(int)
+    at = np.repeat(np.arange(len(parts)), parts)
+    share = (np.arange(len(at)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[at]
+    curve = np.repeat(np.arange(len(curves.counts)), curves.counts)
+    return replace(
+        curves,
+        points=curves.points[at] + share[:, None] * np.where(last[at, None], 0.0, ahead[at]),
+        counts=np.bincount(curve, parts, len(curves.counts)).astype(int),
+        widths=curves.widths[at],
+        depths=curves.depths[at],
+    )
+
+
+def direction_colors(lines: list[np.ndarray]) -> np.ndarray:
+    """A colour [sum of points, 3] in [0, 1] for every point: the magnitudes of the direction's x, y and z."""
+    ahead = [np.gradient(line, axis=0) for line in lines]
+    size = [np.linalg.norm(d, axis=1, keepdims=True) for d in ahead]
+    return np.concatenate([np.abs(d) / np.maximum(n, 1e-30) for d, n in zip(ahead, size, strict=True)])
+
+
 def add(plotter: Any, scene: Scene) -> list[Any]:
-    """Draw every explicit scratch in its layer's colour; returns the actors."""
+    """Draw every explicit scratch in its layer's colour, or by its direction where it diffracts; returns the actors."""
     pv = pyvista()
     actors = []
     for item in shown(scene):
+        diffracts = scene.materials[item.material].wave is not None
         for index in item.layer.curves:
-            lines = [line for line in polylines(scene, scene.curves[index], item.material) if len(line) > 1]
+            drawn = refined(scene.curves[index]) if diffracts else scene.curves[index]
+            lines = [line for line in polylines(scene, drawn, item.material) if len(line) > 1]
             if not lines:
                 continue
             starts = np.cumsum([0] + [len(line) for line in lines[:-1]])
             ranges = [start + np.arange(len(line)) for line, start in zip(lines, starts, strict=True)]
             cells = [np.concatenate([[len(points)], points]) for points in ranges]
             data = pv.PolyData(np.concatenate(lines), lines=np.concatenate(cells))
-            actor = plotter.add_mesh(data, color=item.color, line_width=2.0, lighting=False)
+            look: dict[str, Any] = {"color": item.color, "line_width": 2.0}
+            if diffracts:
+                data.point_data["direction"] = (255.0 * direction_colors(lines) + 0.5).astype(np.uint8)
+                look = {"scalars": "direction", "rgb": True, "line_width": 1.0}
+            actor = plotter.add_mesh(data, lighting=False, **look)
             actor.mapper.SetRelativeCoincidentTopologyLineOffsetParameters(0, -4)
             actor.mapper.SetResolveCoincidentTopologyToPolygonOffset()
             actors.append(actor)

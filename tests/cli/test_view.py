@@ -54,3 +54,12 @@ def test_one_profile(monkeypatch, argv, source, layer, depth):
 def test_options_of_the_other_window_are_refused(shown, capsys, argv):
     assert main(["view", *argv]) == 2
     assert argv[1] in capsys.readouterr().err and not shown
+
+
+def test_the_lobe_of_one_scratch(monkeypatch, capsys):
+    calls = []
+    monkeypatch.setattr(viewers, "view_lobe", lambda *args: calls.append(args))
+    assert main(["view", "lobe", "--screenshot", "a.png"]) == 0
+    assert calls == [("a.png",)]
+    assert main(["view", "lobe", "--spp", "2"]) == 2
+    assert "lobe" in capsys.readouterr().err and len(calls) == 1

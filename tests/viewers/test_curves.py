@@ -30,3 +30,15 @@ def test_object_scratches_are_drawn_as_they_are(make_scene, make_layer):
     scene = make_scene((make_layer(distribution="curves", curves=(0,)),), (drawn,))
     lines = curves.polylines(scene, drawn, 0)
     assert [line.tolist() for line in lines] == [points[:2], points[2:]]
+
+
+def test_scratches_that_diffract_follow_the_surface_in_the_colours_of_their_directions(make_scene, make_layer):
+    """Points between where a line is long; red along x, green along y."""
+    drawn = record([[0.1, 0.5, 0], [0.9, 0.5, 0], [0.5, 0.2, 0], [0.5, 0.21, 0], [0.5, 0.22, 0]], [2, 3], "uv")
+    fine = curves.refined(drawn, 0.1)
+    assert fine.counts.tolist() == [9, 3] and len(fine.widths) == 12
+    assert np.allclose(fine.points[:9, 0], np.linspace(0.1, 0.9, 9)) and np.array_equal(
+        fine.points[9:], drawn.points[2:]
+    )
+    lines = curves.polylines(make_scene((make_layer(distribution="curves", curves=(0,)),), (fine,)), fine, 0)
+    assert np.allclose(curves.direction_colors(lines), [[1, 0, 0]] * 9 + [[0, 1, 0]] * 3, atol=1e-4)
