@@ -97,10 +97,13 @@ def _glint_fields(plan: EffectPlan) -> dict[str, Any]:
     """What of diffraction is compiled."""
     if not plan.on("diffraction"):
         return {}
+    segments = plan.on("diffraction.segments")
     method = "closed-form" if plan.on("diffraction.closedForm") else "slices"
     return {
         "glints": True,
-        "glint_segments": plan.on("diffraction.segments"),
+        "glint_segments": segments,
+        "glint_lists": segments and plan.on("diffraction.lists"),
+        "glint_hierarchy": segments and plan.on("diffraction.hierarchy"),
         "glint_bands": plan.on("diffraction.bands"),
         "glint_gratings": plan.on("diffraction.bands") and plan.on("diffraction.coherent"),
         "glint_lookup": plan.on("diffraction.lookup"),

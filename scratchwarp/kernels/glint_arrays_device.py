@@ -86,7 +86,9 @@ class Spectrum:
 class GlintArrays:
     """All of it. ``material``: material -> entry of ``waves``, or -1; ``colors``: linear Rec.709 of each wavelength,
     those of a material add up to 1; ``reflect[row, cosine]``, ``spectral[row, cosine, wavelength]``: reflectance at
-    even steps of the cosine from 0 to 1; ``shares``: linear Rec.709 of mean |D|^2."""
+    even steps of the cosine from 0 to 1; ``shares``: linear Rec.709 of mean |D|^2. The pieces of triangle t are
+    ``segments[starts[t] .. starts[t + 1]]``; ``around[around_starts[t] .. around_starts[t + 1]]`` are the triangles
+    that share a corner with it, and itself, which hold all within ``around_reach[t]`` [m] of it."""
 
     material: wp.array(dtype=int)
     waves: wp.array(dtype=WaveMaterial)
@@ -100,6 +102,9 @@ class GlintArrays:
     outlines: wp.array(dtype=wp.vec4d)
     segments: wp.array(dtype=Segment)
     starts: wp.array(dtype=int)
+    around_starts: wp.array(dtype=int)
+    around: wp.array(dtype=int)
+    around_reach: wp.array(dtype=float)
     bvh: wp.uint64
     bands: wp.array(dtype=BandData)
     spectrum: Spectrum

@@ -27,6 +27,7 @@ from .world_device import LightSet
 
 _CORNERS = wp.constant(12)  # of the polygon that stands for a disk
 _DOME = wp.constant(16)  # parts of a dome's half circle
+_SHARE = wp.constant(4)  # of them that share a shadow ray
 FLAT = ("rect", "disk", "cylinder", "mesh")
 _MOST_KNOWN = 8  # lights whose visibility is kept from scratch to scratch
 
@@ -201,7 +202,7 @@ def make_strand_light(key: KernelKey, transmittance):
         arrays: MaterialArrays,
         p: wp.vec3,
         ng: wp.vec3,
-        jitter: float,
+        jitter: wp.vec2,
     ) -> wp.vec3:
         """The half circle xi_1 = 0 in parts of even cosine, each with the dome's radiance somewhere in it."""
         total = wp.vec3(0.0, 0.0, 0.0)
@@ -209,20 +210,24 @@ def make_strand_light(key: KernelKey, transmittance):
         s = wp.sqrt((1.0 - u) * (1.0 + u))
         places = wp.zeros(shape=1, dtype=wp.vec3)
         cuts = wp.zeros(shape=1, dtype=wp.vec4)
+        seen = float(1.0)
         for j in range(wp.static(len(models))):
             if wp.static(names[j] == "dome"):
                 for k in range(_DOME):
                     low = 2.0 * float(k) / float(_DOME) - 1.0
                     high = 2.0 * float(k + 1) / float(_DOME) - 1.0
-                    middle = low + jitter * (high - low)
+                    middle = low + jitter[0] * (high - low)
                     i = wp.vec3(u, s * middle, s * wp.sqrt((1.0 - middle) * (1.0 + middle)))
                     w = to_world(strand.frame, i)
-                    seen = float(1.0)
                     if wp.static(key.shadows):
-                        if light.shadow != 0:
+                        # one ray for a few neighbours, towards one of them
+                        if light.shadow != 0 and k % _SHARE == 0:
                             seen = 0.0
-                            if wp.dot(w, ng) > 0.0:
-                                seen = transmittance(g, arrays, p, w, light.shadow_distance)
+                            at = wp.min(low + jitter[1] * float(_SHARE) * (high - low), 1.0)
+                            ray = wp.vec3(u, s * at, s * wp.sqrt((1.0 - at) * (1.0 + at)))
+                            toward = to_world(strand.frame, ray)
+                            if wp.dot(toward, ng) > 0.0:
+                                seen = transmittance(g, arrays, p, toward, light.shadow_distance)
                     radiance = wp.static(models[j].hit)(lights.arrays, light, p, w).radiance
                     radiance = seen * radiance + (1.0 - seen) * wp.cw_mul(radiance, light.shadow_color)
                     if largest(radiance) > 0.0:
@@ -271,7 +276,7 @@ def make_strand_light(key: KernelKey, transmittance):
                         slope = strand.bend_n * view.o[2] - closeness * (1.0 - view.o[0] * view.o[0])
                         view.shift = slope * strand.mean
                         total += light.specular * dome_light(
-                            a, wave, layer, strand, view, lights, light, g, arrays, p, ng, u[0]
+                            a, wave, layer, strand, view, lights, light, g, arrays, p, ng, u
                         )
                     else:
                         ls = wp.static(models[j].sample)(lights.arrays, light, p, u)

@@ -12,7 +12,7 @@ from ..plan import EffectPlan
 from ..plan.waves import REGULAR, WaveLayerPlan, is_grating, looks_up, reflectances
 from ..scene import Scene, Wave
 from ..scratches.generate import random_scratches
-from ..scratches.segments import SegmentSet, Stroke, build
+from ..scratches.segments import SegmentSet, Stroke, build, surroundings
 from .geometry import PackedGeometry
 from .glint_arrays_device import BandData, GlintArrays, Spectrum, WaveLayer, WaveMaterial
 from .glint_tables import wavelengths_of, wide_table
@@ -152,7 +152,12 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
     segments = None
     if strokes:
         g = shape.arrays
-        segments = build(strokes, g.points, g.uvs, g.dpdu, g.dpdv, shape.mesh, device=device)
+        segments = build(strokes, g.points, g.uvs, g.dpdu, g.dpdv, shape.mesh, key.glint_hierarchy, device)
+        if key.glint_lists:
+            starts, around, reach = surroundings(g.points.numpy().reshape(-1, 3, 3))
+            arrays.around_starts = wp.array(starts, dtype=int, device=device)
+            arrays.around = wp.array(around, dtype=int, device=device)
+            arrays.around_reach = wp.array(reach, dtype=float, device=device)
         arrays.segments, arrays.starts = segments.segments, segments.starts
         arrays.bvh = segments.bvh.id if segments.bvh is not None else 0
     which = np.full(max(len(scene.materials), 1), -1, np.int32)

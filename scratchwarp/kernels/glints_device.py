@@ -196,40 +196,76 @@ def make_glints(key: KernelKey, transmittance):
         wave = a.waves[number]
         known = wp.zeros(shape=8, dtype=wp.vec4)
         if wp.static(key.glint_segments):
-            if a.bvh != wp.uint64(0):
-                sigma = 1.0e-6 * wave.sigma
-                reach = wp.vec3(0.0, 0.0, 0.0)
-                for c in range(3):
-                    square = (step_x[c] * step_x[c] + step_y[c] * step_y[c]) / 6.0 + 0.5 * sigma * sigma
-                    reach[c] = _REACH * wp.sqrt(square)
-                query = wp.bvh_query_aabb(a.bvh, s.p - reach, s.p + reach)
-                found = int(0)
-                while wp.bvh_query_next(query, found):
-                    if a.layers[a.segments[found].layer].wave == number:
-                        strand = strand_of(g, a, found, s, frame.n, step_x, step_y, sigma)
-                        if strand.length > 0.0:
-                            layer = a.layers[strand.layer]
-                            share = strand.length * strand.width * depth_share(a, layer, strand.depth)
-                            covered += share
-                            bare = uncovered(bare, share)
-                            lit = strand_light(
-                                a,
-                                strand,
-                                lights,
-                                g,
-                                arrays,
-                                p,
-                                s.ng,
-                                s.instance,
-                                wo,
-                                closeness,
-                                known,
-                                index,
-                                dimension,
-                                seed,
-                            )
-                            total += wp.vec3(lit[0], lit[1], lit[2])
-                            r.rays += lit[3]
+            sigma = 1.0e-6 * wave.sigma
+            reach = wp.vec3(0.0, 0.0, 0.0)
+            for c in range(3):
+                square = (step_x[c] * step_x[c] + step_y[c] * step_y[c]) / 6.0 + 0.5 * sigma * sigma
+                reach[c] = _REACH * wp.sqrt(square)
+            listed = wp.static(key.glint_lists) and not wp.static(key.glint_hierarchy)
+            if wp.static(key.glint_lists and key.glint_hierarchy):
+                listed = True
+                if a.around_reach.shape[0] > 0:
+                    listed = wp.length(reach) <= a.around_reach[s.face]
+            if wp.static(key.glint_lists):
+                if listed and a.around_starts.shape[0] > 0:
+                    for k in range(a.around_starts[s.face], a.around_starts[s.face + 1]):
+                        face = a.around[k]
+                        for found in range(a.starts[face], a.starts[face + 1]):
+                            if a.layers[a.segments[found].layer].wave == number:
+                                strand = strand_of(g, a, found, s, frame.n, step_x, step_y, sigma)
+                                if strand.length > 0.0:
+                                    layer = a.layers[strand.layer]
+                                    share = strand.length * strand.width * depth_share(a, layer, strand.depth)
+                                    covered += share
+                                    bare = uncovered(bare, share)
+                                    lit = strand_light(
+                                        a,
+                                        strand,
+                                        lights,
+                                        g,
+                                        arrays,
+                                        p,
+                                        s.ng,
+                                        s.instance,
+                                        wo,
+                                        closeness,
+                                        known,
+                                        index,
+                                        dimension,
+                                        seed,
+                                    )
+                                    total += wp.vec3(lit[0], lit[1], lit[2])
+                                    r.rays += lit[3]
+            if wp.static(key.glint_hierarchy):
+                if not listed and a.bvh != wp.uint64(0):
+                    query = wp.bvh_query_aabb(a.bvh, s.p - reach, s.p + reach)
+                    other = int(0)
+                    while wp.bvh_query_next(query, other):
+                        if a.layers[a.segments[other].layer].wave == number:
+                            strand = strand_of(g, a, other, s, frame.n, step_x, step_y, sigma)
+                            if strand.length > 0.0:
+                                layer = a.layers[strand.layer]
+                                share = strand.length * strand.width * depth_share(a, layer, strand.depth)
+                                covered += share
+                                bare = uncovered(bare, share)
+                                lit = strand_light(
+                                    a,
+                                    strand,
+                                    lights,
+                                    g,
+                                    arrays,
+                                    p,
+                                    s.ng,
+                                    s.instance,
+                                    wo,
+                                    closeness,
+                                    known,
+                                    index,
+                                    dimension,
+                                    seed,
+                                )
+                                total += wp.vec3(lit[0], lit[1], lit[2])
+                                r.rays += lit[3]
         if wp.static(key.glint_bands):
             for n in range(wave.first_band, wave.first_band + wave.bands):
                 band = a.bands[n]

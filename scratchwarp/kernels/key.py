@@ -23,6 +23,7 @@ class KernelKey:
         mesh_lights: some geometry is a light. path: indirect bounces.
         responses: kinds of response over solid angle, of scratches or bases.
         glints: some scratches diffract. glint_segments: explicit ones; glint_bands: regular patterns.
+        glint_lists, glint_hierarchy: pieces are found by triangle, in a hierarchy, or either by what a footprint needs.
         glint_gratings: some of them show orders.
         glint_areas: under lights with an extent. glint_method: slices, closed-form or paper.
         glint_lookup: colours under wide lights are looked up. glint_numeric: some cross-section is no
@@ -58,6 +59,8 @@ class KernelKey:
     responses: tuple[str, ...] = ()
     glints: bool = False
     glint_segments: bool = False
+    glint_lists: bool = False
+    glint_hierarchy: bool = False
     glint_bands: bool = False
     glint_gratings: bool = False
     glint_areas: bool = False

@@ -1,7 +1,10 @@
 """How the effects of wave optics are decided; rules as in ``effects``."""
 
+import math
 from collections.abc import Callable
 from typing import Any
+
+import numpy as np
 
 from ..scene import Layer
 from .waves import REGULAR, is_grating, looks_up
@@ -28,6 +31,44 @@ def _diffraction(f: Any) -> Answer:
 def _segments(f: Any) -> Answer:
     found = [x.label for x in _layers(f) if x.distribution not in REGULAR]
     return _answer(found, "scratches one by one, cut to the triangles", "no scratch that diffracts lies by itself")
+
+
+def _footprints(f: Any) -> tuple[float, float]:
+    """(edge of a sample's footprint, edge of a triangle) [m], both typical of what diffracts."""
+    camera, settings = f.scene.camera, f.settings
+    left, right, _, _ = camera.window(settings.width, settings.height, f.scene.options.conform, 1.0)
+    edge = (right - left) / settings.width / math.sqrt(settings.spp)
+    sizes, far = [], []
+    for instance in f.scene.instances:
+        if not any(f.waves[m] is not None for m in instance.materials):
+            continue
+        mesh, matrix = f.scene.meshes[instance.mesh], instance.transform
+        points = mesh.points @ matrix[:3, :3].T + matrix[:3, 3]
+        some = mesh.triangles[:: max(1, len(mesh.triangles) // 1000)]
+        if len(some):
+            corners = points[some]
+            double = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+            sizes.append(float(np.sqrt(np.median(double))))
+            far.append(float(np.median(np.linalg.norm(corners[:, 0] - camera.transform[:3, 3], axis=1))))
+    if not sizes:
+        return 0.0, 0.0
+    return edge * (1.0 if camera.projection == "orthographic" else min(far)), min(sizes)
+
+
+def _lists(f: Any) -> Answer:
+    found = _segments(f)
+    if not found[0]:
+        return False, "nothing to find", ()
+    footprint, triangle = _footprints(f)
+    said = f"footprints of {footprint:.2g} m on triangles of {triangle:.2g} m"
+    if 4.0 * footprint <= triangle:
+        return True, f"pieces by triangle where the footprint fits its neighbours: {said}", found[2]
+    return False, f"footprints would leave the neighbours of a triangle: {said}", ()
+
+
+def _hierarchy(f: Any) -> Answer:
+    found = _segments(f)
+    return found[0], "pieces in a hierarchy where lists do not do" if found[0] else "nothing to find", found[2]
 
 
 def _bands(f: Any) -> Answer:
@@ -74,6 +115,8 @@ def _never(text: str) -> Callable[[Any], Answer]:
 WAVE_EFFECTS: dict[str, Callable[[Any], Answer]] = {
     "diffraction": _diffraction,
     "diffraction.segments": _segments,
+    "diffraction.lists": _lists,
+    "diffraction.hierarchy": _hierarchy,
     "diffraction.bands": _bands,
     "diffraction.coherent": _coherent,
     "diffraction.areaLights": _areas,

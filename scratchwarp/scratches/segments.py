@@ -46,6 +46,42 @@ class SegmentSet:
     bvh: wp.Bvh | None
 
 
+def corner_numbers(points: Array) -> Array:
+    """A number for each corner of triangles ``[m, 3, 3]`` float32, the same where they are in the same place."""
+    bits = (points.reshape(-1, 3) + np.float32(0.0)).view(np.uint32).astype(np.uint64)
+    keys = bits[:, 0] * np.uint64(0x9E3779B97F4A7C15) ^ bits[:, 1] * np.uint64(0xC2B2AE3D27D4EB4F)
+    keys = (keys ^ (keys >> np.uint64(29))) + bits[:, 2] * np.uint64(0x165667B19E3779F9)
+    _, corner = np.unique(keys, return_inverse=True)
+    return corner.reshape(-1, 3).astype(np.int64)
+
+
+def surroundings(points: Array) -> tuple[Array, Array, Array]:
+    """(starts [m + 1], triangles, reach [m]): for each triangle those that share a corner with it, and itself; how
+    far [m] beyond its edges they reach at least (their least height)."""
+    p = np.ascontiguousarray(points, np.float32)
+    m = len(p)
+    corner = corner_numbers(p)
+    order = np.argsort(corner.ravel(), kind="stable")
+    owner = (order // 3).astype(np.int64)
+    first = np.searchsorted(corner.ravel()[order], np.arange(corner.max(initial=0) + 2))
+    # every pair of triangles at every corner
+    size = np.diff(first)
+    fan = size[corner]  # [m, 3]
+    total = fan.ravel()
+    left = np.repeat(np.arange(m).repeat(3), total)
+    begin = np.repeat(first[:-1][corner.ravel()], total)
+    step = np.arange(len(left)) - np.repeat(np.cumsum(total) - total, total)
+    right = owner[begin + step]
+    pairs = np.unique(left * m + right)
+    left, right = pairs // m, pairs % m
+    starts = np.searchsorted(left, np.arange(m + 1)).astype(np.int32)
+    along = np.roll(p, -1, axis=1).astype(np.float64) - p
+    double = np.linalg.norm(np.cross(along[:, 0], along[:, 1]), axis=1)
+    height = double / np.maximum(np.linalg.norm(along, axis=-1).max(1), 1e-300)
+    reach = np.minimum.reduceat(height[right], starts[:-1]) if len(right) else np.zeros(0)
+    return starts, right.astype(np.int32), reach.astype(np.float32)
+
+
 def edge_normals(points: Array) -> Array:
     """Inward normals of the planes that bound triangles: through each edge and the mean of the normals beside it.
 
@@ -54,11 +90,7 @@ def edge_normals(points: Array) -> Array:
     """
     m = len(points)
     p = np.ascontiguousarray(points, np.float32)
-    bits = (p.reshape(-1, 3) + np.float32(0.0)).view(np.uint32).astype(np.uint64)
-    keys = bits[:, 0] * np.uint64(0x9E3779B97F4A7C15) ^ bits[:, 1] * np.uint64(0xC2B2AE3D27D4EB4F)
-    keys = (keys ^ (keys >> np.uint64(29))) + bits[:, 2] * np.uint64(0x165667B19E3779F9)
-    _, corner = np.unique(keys, return_inverse=True)
-    corner = corner.reshape(m, 3).astype(np.int64)
+    corner = corner_numbers(p)
     exact = p.astype(np.float64)
     along = np.roll(exact, -1, axis=1) - exact
     normal = np.cross(along[:, 0], -along[:, 2])
