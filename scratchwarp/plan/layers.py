@@ -147,14 +147,14 @@ class _Tables:
         digest = tuple((tuple((p.token, s) for p, s in parts)) for parts in nodes)
         first = None
         # many tables: unless more is asked for they are kept small where that will do, 6 MB each instead of 32
-        asked = VARIED_ERROR if self._max_error is None else self._max_error
+        bound = VARIED_ERROR if self._max_error is None else self._max_error
         for number, parts in enumerate(nodes):
             key = ("varied", number, digest, fresnel, layer.model if layer.model in models.TABLE_MODELS else "")
             known = self._plans.get(key)
             if known is None:
                 middle = parts[len(parts) // 2][0]
                 model, off = self._chosen.get(key) or max(
-                    (theta_model(p, reflecting, asked, self._summed) for p in {parts[0][0], parts[-1][0]}),
+                    (theta_model(p, reflecting, bound, self._summed) for p in {parts[0][0], parts[-1][0]}),
                     key=lambda chosen: RENDERED.index(chosen[0]),
                 )
                 known = TablePlan(key, middle, reflecting, 2000, (), theta_model=model, error=off, parts=parts)
