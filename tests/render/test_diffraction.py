@@ -11,6 +11,8 @@ from scratchwarp.reflectance.diffraction.color import spectral_samples
 from scratchwarp.scene import (
     Camera,
     Curves,
+    CylinderLight,
+    DiskLight,
     DistantLight,
     DomeLight,
     Layer,
@@ -126,6 +128,31 @@ def test_area_lights_against_the_library(kind, offset):
     # beyond the edge, 1e-3 of the light, three middle wavelengths of the Gaussian along show: 5 %
     within = 0.03 if offset < 0.01 else 0.05
     assert flux(film, 0.001) @ LUMINANCE == pytest.approx(expected @ LUMINANCE, rel=within, abs=0.0)
+
+
+@pytest.mark.parametrize("kind", ["disk", "cylinder"])
+def test_round_lights_against_polygons(kind):
+    """A disk against a regular 90-gon, a thin cylinder against the rectangle that it looks like from afar (its near
+    side is closer by radius / distance = 1 %): 3 % as above."""
+    angle, size, length = 0.5, 0.01, 2e-4
+    u = np.array([np.cos(angle), np.sin(angle), 0.0])
+    center = np.array([-0.6 * np.sin(angle), 0.6 * np.cos(angle), 0.8])
+    normal = -center / np.linalg.norm(center)
+    ex, ey = size * u, size * np.cross(normal, u)
+    fields = {"path": "/l", "radiance": np.full(3, 2.0), "center": center - [0, 0, 1]}
+    if kind == "disk":
+        light = DiskLight(**fields, ex=ex, ey=ey, normal=normal)
+        turn = np.linspace(0, 2 * np.pi, 90, endpoint=False)[:, None]
+        known = diffraction.PolygonLight(center + np.cos(turn) * ex + np.sin(turn) * ey)
+    else:
+        light = CylinderLight(**fields, axis=3 * ey, radius=size)
+        known = diffraction.PolygonLight(center + np.array([-ex - 3 * ey, ex - 3 * ey, ex + 3 * ey, -ex + 3 * ey]))
+    film = render(waves(), light, (stroke(angle, length=length),), spp=64, camera=straight_down(0.001))
+    at, weights = spectral_samples(16)
+    one = diffraction.Scratch(3.0, 1.0, angle, 0.0, SIGMA)
+    f = diffraction.radiance(known, np.array([0, 0, 1.0]), one, at, slices=16)
+    expected = 2.0 * np.sqrt(np.pi) * SIGMA * 1e-6 * length * (f @ weights)
+    assert flux(film, 0.001) @ LUMINANCE == pytest.approx(expected @ LUMINANCE, rel=0.03, abs=0.0)
 
 
 @pytest.mark.parametrize("shape, phase", [("vGroove", "smallAngle"), ("rectangle", "angleDependent")])
