@@ -44,7 +44,7 @@ def test_no_binary_assets():
     kinds = (".exr", ".hdr", ".usdc", ".usdz", ".png", ".jpg", ".npz", ".bin")
     folders = ("docs", "pipelines", "scratchwarp", "tests", "usd_schemas", "viewers")
     files = [p for folder in folders for p in (repository() / folder).rglob("*") if p.suffix in kinds]
-    pictures = ("ball", "profiles_shapes", "anisotropy_bumps", "anisotropy_scratches", "models")
+    pictures = ("ball", "profiles_shapes", "anisotropy_bumps", "anisotropy_scratches", "models", "diffraction")
     assert {p.relative_to(repository()) for p in files} <= {Path(f"docs/{name}.png") for name in pictures}
     assert all(p.stat().st_size < 400_000 for p in files)
 
