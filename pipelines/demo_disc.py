@@ -33,7 +33,7 @@ def disc(path: Path | str, detail: float = 1.0) -> Path:
     usd.mesh(stage, "table", shapes.lathe([[(60.0, 0.0), (0.0, 0.0)]], 48), slate, (0.0, -0.12, 0.0))
     usd.sphere_light(stage, "bulb", (3.0, 28.0, -16.0), 0.8, 260.0)
     usd.dome_light(stage, "sky", 0.02)
-    usd.camera(stage, (0.0, 26.0, 15.0), (0.0, 0.0, 0.0))
+    usd.camera(stage, (0.0, 28.0, 17.0), (0.0, 0.0, 0.3))
     usd.settings(stage)
     return usd.save(stage, path, "A compact disc: a spiral of 1.6 um pitch.")
 
