@@ -99,8 +99,10 @@ def _glint_fields(plan: EffectPlan) -> dict[str, Any]:
         return {}
     segments = plan.on("diffraction.segments")
     method = "closed-form" if plan.on("diffraction.closedForm") else "slices"
+    footprint = "exact" if plan.on("diffraction.exactFootprint") else "gaussian"
     return {
         "glints": True,
+        "glint_footprint": "paper" if plan.on("diffraction.paperFootprint") else footprint,
         "glint_segments": segments,
         "glint_lists": segments and plan.on("diffraction.lists"),
         "glint_hierarchy": segments and plan.on("diffraction.hierarchy"),

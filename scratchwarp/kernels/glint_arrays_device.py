@@ -3,6 +3,7 @@
 import warp as wp
 
 from ..optics.frames_device import Frame
+from ..reflectance.diffraction.quadrature_device import Rules
 from ..scratches.segments_device import Segment
 
 wp.set_module_options({"enable_backward": False})
@@ -108,6 +109,7 @@ class GlintArrays:
     bvh: wp.uint64
     bands: wp.array(dtype=BandData)
     spectrum: Spectrum
+    rules: Rules
 
 
 @wp.struct

@@ -10,6 +10,7 @@ import warp as wp
 from ..optics import spectra
 from ..plan import EffectPlan
 from ..plan.waves import REGULAR, WaveLayerPlan, is_grating, looks_up, reflectances
+from ..reflectance.diffraction.arrays import rules
 from ..scene import Scene, Wave
 from ..scratches.generate import random_scratches
 from ..scratches.segments import SegmentSet, Stroke, build, surroundings
@@ -150,6 +151,8 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
     numbers = {pair: number for number, pair in enumerate(numbers)}
     strokes = _strokes(scene, plan, key, shape, numbers)
     segments = None
+    if key.glint_footprint != "gaussian":
+        arrays.rules = rules((16,))
     if strokes:
         g = shape.arrays
         segments = build(strokes, g.points, g.uvs, g.dpdu, g.dpdv, shape.mesh, key.glint_hierarchy, device)

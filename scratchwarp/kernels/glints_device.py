@@ -10,6 +10,7 @@ import warp as wp
 
 from ..optics.frames_device import Frame, frame_with_tangent
 from ..reflectance.base_device import CONDUCTOR, DIELECTRIC, SCHLICK, Base
+from ..reflectance.diffraction.ellipse_device import EXACT, PAPER, ellipse_footprint, make_ellipse
 from ..scratches.segments_device import Plane, plane_of
 from .geometry_device import Geometry, Surface
 from .glint_arrays_device import GlintArrays, Glints, Strand, depth_share
@@ -109,9 +110,30 @@ def left_of_base(base: Base, left: wp.vec3) -> wp.vec3:
     return wp.where(base.fresnel == CONDUCTOR, left, wp.vec3(1.0, 1.0, 1.0))
 
 
+@wp.func
+def ellipse_density(
+    a: GlintArrays, xt: float, xv: float, yt: float, yv: float, across: float, sigma: float, method: int
+) -> float:
+    """What a Gaussian has across the scratch, of an ellipse with the moments of the footprint's edges (xt, xv) and
+    (yt, yv), along and across: its mean of e^{-y^2 / sigma^2} over sqrt(pi) sigma [1/m]; ``sigma`` [m]."""
+    c_tt = (xt * xt + yt * yt) / 6.0
+    c_tv = (xt * xv + yt * yv) / 6.0
+    c_vv = (xv * xv + yv * yv) / 6.0
+    middle = 0.5 * (c_tt + c_vv)
+    spread = wp.sqrt(0.25 * (c_tt - c_vv) * (c_tt - c_vv) + c_tv * c_tv)
+    # half axes in micrometres, and the angle from the scratch to the long one
+    long = wp.float64(2.0e6 * wp.sqrt(middle + spread))
+    short = wp.float64(2.0e6 * wp.sqrt(wp.max(middle - spread, 1.0e-6 * middle)))
+    e = make_ellipse(long, short, wp.float64(0.5 * wp.atan2(2.0 * c_tv, c_tt - c_vv)))
+    radius = wp.float64(1.0e6 * sigma)
+    mean = ellipse_footprint(e, wp.float64(1.0e6 * across), radius, method, a.rules)
+    return float(mean / (wp.float64(2.0 * wp.pi) * radius * radius)) / (1.7724538509 * sigma)
+
+
 def make_glints(key: KernelKey, transmittance):
     """Device function: what diffraction adds at a point, compiled for ``key``."""
     strand_light = make_strand_light(key, transmittance)
+    method = int(PAPER if key.glint_footprint == "paper" else EXACT)
 
     @wp.func
     def strand_of(
@@ -149,6 +171,8 @@ def make_glints(key: KernelKey, transmittance):
                 held = between((-half - along - mean) / deviation, (half - along - mean) / deviation)
                 if held.part > 1.0e-5:
                     density = wp.exp(-0.5 * across * across / c_vv) / (_SQRT_TWO_PI * wp.sqrt(c_vv))
+                    if wp.static(key.glint_footprint != "gaussian"):
+                        density = ellipse_density(a, xt, xv, yt, yv, across, sigma, wp.static(method))
                     r.length = 1.0e-6 * density * held.part
                     r.mean = mean + deviation * held.mean
                     r.variance = deviation * deviation * held.variance

@@ -26,6 +26,7 @@ class KernelKey:
         glint_lists, glint_hierarchy: pieces are found by triangle, in a hierarchy, or either by what a footprint needs.
         glint_gratings: some of them show orders.
         glint_areas: under lights with an extent. glint_method: slices, closed-form or paper.
+        glint_footprint: gaussian, exact or paper.
         glint_lookup: colours under wide lights are looked up. glint_numeric: some cross-section is no
             rectangle, or some phase depends on angles.
         closed_form: light along the cones of scratches is integrated; cone_taps: some of those lights are not even.
@@ -67,6 +68,7 @@ class KernelKey:
     glint_lookup: bool = False
     glint_numeric: bool = False
     glint_method: str = "slices"
+    glint_footprint: str = "gaussian"
     closed_form: bool = False
     cone_taps: bool = False
     sample_lights: bool = False

@@ -13,7 +13,7 @@ from .effects import EFFECTS, Facts, sampled_lights
 from .layers import plan_layers, reflector
 from .models import base_responses
 from .resolve import resolve
-from .waves import diffracts, plan_waves
+from .waves import complaints, diffracts, plan_waves
 
 _MISSING = ("grooves",)  # authored and planned, but not rendered yet
 Layers = tuple[tuple[LayerPlan, ...], ...]
@@ -46,6 +46,7 @@ def make_plan(scene: Scene, settings: Settings | None = None, earlier: EffectPla
             scene, allowed, decided.max_error, known, decided.model, waved, summed
         )
         waves = plan_waves(scene, waved, reflector, decided.model)
+        warnings += complaints(waves)
         used = sorted({m for instance in scene.instances for m in instance.materials})
         responses, bases = base_responses(scene, used, responses, lambda effect: forced.get(effect, True))
         far = ""

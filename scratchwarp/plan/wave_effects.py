@@ -123,6 +123,8 @@ WAVE_EFFECTS: dict[str, Callable[[Any], Answer]] = {
     "diffraction.lookup": _lookup,
     "diffraction.outlines": _outlines,
     "diffraction.angles": _angles,
+    "diffraction.exactFootprint": _never("Gaussian footprints; on: ellipses, integrated across the scratch"),
+    "diffraction.paperFootprint": _never("Gaussian footprints; on: ellipses by Velinov 2018 Eq. 15 and 16, mended"),
     "diffraction.closedForm": _never("lights in 8 slices; on: the slice xi_1 = 0 alone (Velinov 2018 Eq. 27)"),
     "diffraction.paperLights": _never("exact sine integral; on: Velinov 2018 Eq. 27 with Eq. 29"),
 }

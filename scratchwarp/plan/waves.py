@@ -104,6 +104,28 @@ def plan_waves(
     return tuple(made)
 
 
+def complaints(waves: tuple[WavePlan | None, ...]) -> tuple[str, ...]:
+    """What of diffracting layers is not honoured, one sentence each."""
+    said: list[str] = []
+    for own in waves:
+        for plan in own.layers if own is not None else ():
+            layer = plan.layer
+            if own is not None and own.wave.summation == "coherent" and not is_grating(own.wave, layer):
+                said.append(
+                    f"{layer.label}: only regular patterns closer than coherenceRadius are summed coherently; the "
+                    "light of these scratches adds up"
+                )
+            if layer.mask_texture >= 0 or layer.mask_primvar:
+                said.append(f"{layer.label}: masks are not honoured where scratches diffract")
+            if layer.orientation_texture >= 0 or layer.orientation_primvar:
+                said.append(f"{layer.label}: orientations are not honoured where scratches diffract")
+            if layer.profile_variation > 0.0 or layer.variation_length > 0.0:
+                said.append(f"{layer.label}: scratches that diffract are alike all along and of one cross-section")
+            if layer.model == "auto" and layer.distribution == "worley":
+                said.append(f"{layer.label}: worley scratches that diffract are laid out one by one, as random ones")
+    return tuple(dict.fromkeys(said))
+
+
 def reflectances(plan: WaveLayerPlan, cosines: np.ndarray, wavelengths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(linear Rec.709 ``[c, 3]``, by wavelength [nm] ``[c, n]``) of a layer; the latter ones where it is not known."""
     by_color = np.broadcast_to(plan.fresnel.reflectance(cosines), (len(cosines), 3))

@@ -103,6 +103,20 @@ def test_distant_light_against_the_library(angle, depth):
     assert flux(film) @ LUMINANCE == pytest.approx(expected @ LUMINANCE, rel=1e-2, abs=0.0)
 
 
+def test_exact_footprint_holds_as_much():
+    """The mean over an ellipse in place of a Gaussian moves light, and loses none: the same closed form."""
+    omega_i = toward(0.3 + np.pi / 2, 1.2)
+    light = DistantLight(path="/l", radiance=np.full(3, 2.0), direction=-omega_i)
+    material, curves, floor = waves(), (stroke(0.3),), [scenes.place(0, 0, (0, 0, -1))]
+    world = scenes.scene([scenes.plane(0.02)], [material], [light], instances=floor, cam=straight_down(), curves=curves)
+    effects = {"diffraction.exactFootprint": True}
+    film = sw.render(world, sw.make_plan(world, sw.Settings(width=16, height=16, spp=64, filter="box", effects=effects)))
+    at, weights = spectral_samples(16)
+    f = diffraction.brdf(omega_i, np.array([0, 0, 1.0]), diffraction.Scratch(3.0, 1.0, 0.3, 0.0, SIGMA), at)
+    expected = 2.0 * omega_i[2] * np.sqrt(np.pi) * SIGMA * 1e-6 * LENGTH * (f @ weights)
+    assert flux(film) @ LUMINANCE == pytest.approx(expected @ LUMINANCE, rel=1e-2, abs=0.0)
+
+
 @pytest.mark.parametrize("kind", ["sphere", "rect"])
 @pytest.mark.parametrize("offset", [0.0, 0.004, 0.012])
 def test_area_lights_against_the_library(kind, offset):
