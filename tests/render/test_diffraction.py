@@ -109,8 +109,8 @@ def test_exact_footprint_holds_as_much():
     light = DistantLight(path="/l", radiance=np.full(3, 2.0), direction=-omega_i)
     material, curves, floor = waves(), (stroke(0.3),), [scenes.place(0, 0, (0, 0, -1))]
     world = scenes.scene([scenes.plane(0.02)], [material], [light], instances=floor, cam=straight_down(), curves=curves)
-    effects = {"diffraction.exactFootprint": True}
-    film = sw.render(world, sw.make_plan(world, sw.Settings(width=16, height=16, spp=64, filter="box", effects=effects)))
+    asked = {"width": 16, "height": 16, "spp": 64, "filter": "box"}
+    film = sw.render(world, sw.make_plan(world, sw.Settings(effects={"diffraction.exactFootprint": True}, **asked)))
     at, weights = spectral_samples(16)
     f = diffraction.brdf(omega_i, np.array([0, 0, 1.0]), diffraction.Scratch(3.0, 1.0, 0.3, 0.0, SIGMA), at)
     expected = 2.0 * omega_i[2] * np.sqrt(np.pi) * SIGMA * 1e-6 * LENGTH * (f @ weights)
