@@ -32,7 +32,7 @@ LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 LENGTH = 0.004
 """Of the one scratch [m]."""
 # one kernel for all tests: its code does not depend on which of these lights are there
-LIGHTS = {f"lights.{name}": True for name in ("distant", "sphere", "rect", "disk", "cylinder", "dome")}
+LIGHTS = {f"lights.{name}": True for name in ("distant", "sphere", "rect", "disk", "cylinder", "mesh", "dome")}
 COMPILED = {**LIGHTS, "shadows": True}
 WAVES = ("lists", "hierarchy", "areaLights", "segments", "bands", "coherent", "lookup", "outlines", "angles")
 COMPILED |= {f"diffraction.{name}": True for name in WAVES}

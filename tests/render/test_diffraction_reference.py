@@ -22,13 +22,13 @@ from scratchwarp.scene import (
 
 from . import diffraction_reference as reference
 from . import scenes
+from .test_diffraction import COMPILED
 
 SIZE, PIXELS, SPP = 0.002, 10, 64
 WAVES = 8
 EXTENT = 0.006
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 CENTER = np.array([0.12, -0.05, 0.99]) / np.linalg.norm([0.12, -0.05, 0.99])  # to the lights, 1 m away
-EFFECTS = {f"lights.{name}": True for name in ("sphere", "rect", "mesh", "dome")}
 
 
 def bowl(n=4):
@@ -123,7 +123,7 @@ def world(kind):
 
 
 def rendered(scene, spp=SPP):
-    settings = sw.Settings(width=PIXELS, height=PIXELS, spp=spp, filter="box", effects=EFFECTS)
+    settings = sw.Settings(width=PIXELS, height=PIXELS, spp=spp, filter="box", effects=COMPILED)
     return sw.render(scene, sw.make_plan(scene, settings))["scratches"].astype(float)
 
 
