@@ -1,6 +1,9 @@
 """Scripts that people run and copy: one task a file, each with main(argv).
 
 Files:
+    author                    puts presets (folder presets) and attributes on an asset, in a layer over it: looks reads
+                              them, put_on writes them
+    command, commands         what makes a pipeline a sub-command of scratchwarp
     author_demo               writes the demo stages: demo_ball, demo_kettle, demo_panel, demo_plain, and those that
                               diffract: demo_spoon, demo_disc, demo_vinyl; demo_shapes has their meshes, demo_usd puts
                               them on a stage

@@ -213,6 +213,7 @@ def parser() -> argparse.ArgumentParser:
     """The whole command line: ``args.command`` is the name of the function of ``cli`` to run."""
     from . import __version__
     from .pipelines import scratch_map
+    from .pipelines.commands import COMMANDS
     from .viewers import BRDF_KEYS, KEYS, PROFILE_KEYS
 
     whole = argparse.ArgumentParser(
@@ -224,12 +225,14 @@ def parser() -> argparse.ArgumentParser:
     whole.add_argument("--version", action="version", version=f"scratchwarp {__version__}")
     commands = whole.add_subparsers(dest="command", required=True, metavar="COMMAND")
 
+    examples = _EXAMPLES | {name: "\n  ".join(c.examples) for name, c in COMMANDS.items()}
+
     def command(name: str, says: str, json_too: bool = False) -> argparse.ArgumentParser:
         made = commands.add_parser(
             name,
             help=says,
             description=f"{says[0].upper()}{says[1:]}.",
-            epilog=f"examples:\n  {_EXAMPLES[name]}",
+            epilog=f"examples:\n  {examples[name]}",
             formatter_class=argparse.RawDescriptionHelpFormatter,
             allow_abbrev=False,
         )
@@ -316,6 +319,9 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("--retro", action="store_true", help="highlights return to the light")
 
     scratch_map.add_arguments(command("scratchmap", "make a seamless normal map of scratches"))
+
+    for name, pipeline in COMMANDS.items():
+        pipeline.add_arguments(command(name, pipeline.says, json_too=True))
 
     made = command("demo", "author the demo stages and render each to EXR and PNG")
     made.add_argument("out", metavar="OUT_DIR", help="folder for stages and images; made when missing")

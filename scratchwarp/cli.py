@@ -22,9 +22,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run one sub-command and return its exit status; argparse itself leaves with 2 on wrong usage."""
     args = arguments.parser().parse_args(argv)
     try:
-        if args.command != "validate":
+        if args.command in COMMANDS and args.command != "validate":
             _start_warp()
-        status = COMMANDS[args.command](args)
+        status = COMMANDS.get(args.command, pipeline)(args)
         sys.stdout.flush()
         return status
     except KeyboardInterrupt:
@@ -283,6 +283,19 @@ def scratchmap(args: Command) -> int:
     return 0
 
 
+def pipeline(args: Command) -> int:
+    """Run one of the pipelines."""
+    from .pipelines import command, commands
+
+    asked = commands.COMMANDS[args.command]
+    if asked.renders:
+        _start_warp()
+    try:
+        return command.show(asked.run(args), args)
+    except command.WrongUsage as error:
+        raise UsageError(str(error)) from error
+
+
 def demo(args: Command) -> int:
     """Author the demo stages in OUT_DIR and render each to EXR and PNG."""
     import scratchwarp as sw
@@ -364,19 +377,9 @@ def _warn(warnings: Sequence[str], told: set[str], quiet: bool) -> None:
 
 
 def _start_warp() -> None:
-    """Start Warp without its greeting, which would stand in the way of results on stdout, and without the remark that
-    there is no CUDA driver, which comes from native code straight to stderr."""
-    import warp
+    from .render.quiet import start_warp
 
-    warp.config.log_level = warp.LOG_ERROR
-    kept, nowhere = os.dup(2), os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, 2)
-    try:
-        warp.init()
-    finally:
-        os.dup2(kept, 2)
-        os.close(kept)
-        os.close(nowhere)
+    start_warp()
 
 
 def _say(text: str) -> None:

@@ -1,6 +1,5 @@
 """A stage that is looked at while it is edited; the edits lie on a layer of their own."""
 
-import os
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -13,13 +12,13 @@ from pxr import Gf, Sdf, Usd, UsdGeom
 
 from scratchwarp.scene import Camera, Control, Scene
 from scratchwarp.scene.digest import digest
-from scratchwarp.whole import whole
 
 from . import controls
 from .curves import CurveSets
 from .layer import layer_primvars, read_layers, read_wave
 from .open import gathered_diagnostics, usd_errors
 from .options import read_settings, settings_path
+from .overlay import check_target, overlay, save_layer
 from .read import opened, read_scene
 from .reading import Reading, Warnings
 
@@ -137,25 +136,9 @@ class LiveStage:
         Raises ValueError where that would replace a file of the stage, OSError where it cannot be written.
         """
         target = Path(path)
-        if target.suffix not in (".usda", ".usd", ".usdc"):
-            raise ValueError(f"{target}: edits are saved as .usda, .usdc or .usd")
-        used = {Path(layer.realPath).resolve() for layer in self._stage.GetUsedLayers() if layer.realPath}
-        if target.resolve() in used:
-            raise ValueError(f"{target}: is a file of the stage that is looked at; save the edits under another name")
-        if not target.parent.is_dir():
-            raise OSError(f"{target}: the folder {target.parent} does not exist")
-        out = Sdf.Layer.CreateAnonymous(".usda")
-        out.TransferContent(self._edits)
-        root = self._stage.GetRootLayer()
-        for name in ("defaultPrim", "metersPerUnit", "upAxis", "timeCodesPerSecond", "framesPerSecond",
-                     "startTimeCode", "endTimeCode", "renderSettingsPrimPath", "colorConfiguration",
-                     "colorManagementSystem", "primaryCameraName", "kilogramsPerUnit"):  # fmt: skip
-            if root.pseudoRoot.HasInfo(name):
-                out.pseudoRoot.SetInfo(name, root.pseudoRoot.GetInfo(name))
-        below = [self._session_layer] if self._session_layer else []
-        out.subLayerPaths = [_relative(Path(layer), target.parent) for layer in (*below, root.realPath)]
-        with whole(target) as draft:
-            out.Export(str(draft))
+        check_target(self._stage, target)
+        between = [self._session_layer] if self._session_layer else []
+        save_layer(overlay(self._edits, self._stage.GetRootLayer(), target, between), target)
 
     def _controls(self) -> Iterator[Control]:
         time_code = self._reading.time
@@ -247,11 +230,3 @@ def _same(old: tuple[Any, ...], new: tuple[Any, ...]) -> tuple[Any, ...]:
     pairs = zip(old, new, strict=False)
     made = tuple(o if o is n or digest(o) == digest(n) else n for o, n in pairs) + new[len(old) :]
     return old if made == old else made
-
-
-def _relative(path: Path, folder: Path) -> str:
-    """``path`` as a layer in ``folder`` names it."""
-    try:
-        return Path(os.path.relpath(path.resolve(), folder.resolve())).as_posix()
-    except ValueError:  # another drive
-        return path.resolve().as_posix()
