@@ -31,8 +31,8 @@ def run(options: argparse.Namespace) -> Report:
     from .put_on import put_on
 
     if options.list:
-        rows = {name: looks.about(path) for name, path in looks.presets().items()}
-        return Report(rows, tuple(f"{name:<20} {says}" for name, says in rows.items()))
+        known = {name: looks.about(path) for name, path in looks.presets().items()}
+        return Report(known, tuple(f"{name:<20} {says}" for name, says in known.items()))
     if not options.asset or not options.out:
         raise WrongUsage("give ASSET and OUT, or --list")
     if not options.preset and not options.values:
