@@ -19,7 +19,7 @@ from ..scene import MeshLight, Scene
 from ..scene.digest import digest
 from ..scene.light import Light as LightRecord
 from ..scratches import KINDS, curves
-from . import geometry, glints, maps, material
+from . import geometry, glints, grooves, maps, material
 from .camera_device import CameraData
 from .key import KernelKey
 from .parts import Parts
@@ -85,6 +85,9 @@ def kernel_key(scene: Scene, plan: EffectPlan) -> KernelKey:
         mesh_lights="mesh" in kinds,
         path=on("indirect"),
         **_glint_fields(plan),
+        grooves=on("grooves"),
+        groove_crossings=on("grooves") and on("grooves.crossings"),
+        groove_bounces=on("grooves") and on("grooves.interreflection"),
         responses=tuple(n for n, r in RESPONSES.items() if on(r.effect) and (distributions or r.base)),
         closed_form=bool(distributions) and on("lights.closedForm"),
         cone_taps=bool(distributions) and on("lights.closedForm") and any(uneven(light) for light in scene.lights),
@@ -232,5 +235,11 @@ def assemble(
         lambda: glints.pack(scene, plan, key, shape, device),
     )
     scratch_set.glints = sparkle.arrays
+    cut = parts.part(
+        "grooves",
+        (digest(scene.materials, key, plan.settings.spp), scene.curves, scene.meshes, placed) if key.grooves else (),
+        lambda: grooves.pack(scene, plan, key, shape, device),
+    )
+    scratch_set.grooves = cut.arrays
     inputs = (camera_data(scene, plan), shape.arrays, stuff.arrays, scratch_set, light_set)
-    return Assembled(key, inputs, (shape, stuff, packed, sets, sparkle, responding), packed.warnings)
+    return Assembled(key, inputs, (shape, stuff, packed, sets, sparkle, responding, cut), packed.warnings)

@@ -73,15 +73,8 @@ def make_transmittance(key: KernelKey, opacity_at):
     return transmittance
 
 
-def make_direct(key: KernelKey, transmittance):
-    """(direct, seen): light sampling at a point, and what a ray sampled from a lobe sees of the lights."""
-    models = models_of(key)
-    finite = [model.name != "dome" for model in models]
-    of_mesh = [model.geometry for model in models]
-    terms_of, _ = make_lobe_terms(key)
-    integrated = [key.closed_form and model.arcs is not None for model in models]
-    # a dome is all around: cones find it
-    sought = [key.sample_lights and (near or not key.sample_cones) for near in finite]
+def make_arrives(key: KernelKey, transmittance):
+    """(linked, arrives): whether a light lights an instance, and what of it reaches a point."""
 
     @wp.func
     def linked(lights: LightSet, light: Light, instance: int) -> bool:
@@ -106,6 +99,20 @@ def make_direct(key: KernelKey, transmittance):
             result = t * result + (1.0 - t) * light.shadow_color
         return result
 
+    return linked, arrives
+
+
+def make_direct(key: KernelKey, transmittance):
+    """(direct, seen): light sampling at a point, and what a ray sampled from a lobe sees of the lights."""
+    models = models_of(key)
+    finite = [model.name != "dome" for model in models]
+    of_mesh = [model.geometry for model in models]
+    terms_of, _ = make_lobe_terms(key)
+    integrated = [key.closed_form and model.arcs is not None for model in models]
+    # a dome is all around: cones find it
+    sought = [key.sample_lights and (near or not key.sample_cones) for near in finite]
+
+    linked, arrives = make_arrives(key, transmittance)
     from_cone = make_cone_lights(key, models, arrives)
 
     @wp.func

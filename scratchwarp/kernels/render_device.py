@@ -10,7 +10,7 @@ from ..optics.hash_device import pixel_seed
 from ..optics.sobol_device import sobol_2d
 from ..reflectance.base_device import Base, base_albedo
 from .base_at_device import make_base_at
-from .bounce_device import make_bounce
+from .bounce_device import Scatter, make_bounce
 from .camera_device import CameraData, footprint_step, lens_point, orthographic_ray, perspective_ray
 from .direct_device import MOST_PASSES, make_direct, make_transmittance
 from .film_device import FilmArrays, Window
@@ -24,6 +24,7 @@ from .geometry_device import (
     lifted,
 )
 from .glints_device import left_of_base, less_specular, make_glints
+from .grooves_device import make_grooves
 from .key import KernelKey
 from .lobe_device import Lobe, largest, luminance
 from .material_device import MaterialArrays
@@ -49,6 +50,7 @@ def make_kernel(key: KernelKey):
     transmittance = make_transmittance(key, opacity_at)
     direct, seen = make_direct(key, transmittance)
     glints = make_glints(key, transmittance) if key.glints else None
+    spot_at, grooves = make_grooves(key, transmittance) if key.grooves else (None, None)
     choose, scatter, glow, pass_through, pass_probability = make_bounce(key, rotated, emission_at)
 
     @wp.kernel(module="unique", module_options={"enable_backward": False})
@@ -247,23 +249,52 @@ def make_kernel(key: KernelKey):
                                 u_lobe,
                                 u_more,
                             )
+                            received = wp.vec4(0.0, 0.0, 0.0, 0.0)
+                            out = Scatter()
+                            grooved = int(0)
+                            if wp.static(key.grooves):
+                                if lobe.scratch == 0:
+                                    spot = spot_at(scratches.grooves, g, s, frame, wo, step_x, step_y)
+                                    if spot.near == 1:
+                                        grooved = 1
+                                        lobe.scratch = 4
+                                        there = grooves(
+                                            scratches.grooves,
+                                            g,
+                                            arrays,
+                                            lights,
+                                            spot,
+                                            lobe,
+                                            s,
+                                            p,
+                                            u_base,
+                                            u_more[1],
+                                            index,
+                                            pair,
+                                            pair + wp.static(OWN_PAIRS),
+                                            seed,
+                                        )
+                                        received = there.received
+                                        out = there.out
                             if depth == 0:
                                 first_scratch = lobe.scratch
                             instance = s.instance
-                            received = direct(
-                                g,
-                                arrays,
-                                scratches.tables,
-                                scratches.responses,
-                                lights,
-                                p,
-                                s.ng,
-                                instance,
-                                lobe,
-                                index,
-                                pair + wp.static(OWN_PAIRS),
-                                seed,
-                            )
+                            if wp.static(not key.grooves) or grooved == 0:
+                                received = direct(
+                                    g,
+                                    arrays,
+                                    scratches.tables,
+                                    scratches.responses,
+                                    lights,
+                                    p,
+                                    s.ng,
+                                    instance,
+                                    lobe,
+                                    index,
+                                    pair + wp.static(OWN_PAIRS),
+                                    seed,
+                                )
+                                out = scatter(scratches.tables, scratches.responses, lobe, s, u_base, u_more[1])
                             if wp.static(key.glints):
                                 if lobe.scratch == 0:
                                     throughput = wp.cw_mul(throughput, kept)
@@ -272,7 +303,6 @@ def make_kernel(key: KernelKey):
                                 if lobe.scratch == 1:
                                     lit = wp.cw_mul(lit, lobe.tint)
                             rays += int(received[3])
-                            out = scatter(scratches.tables, scratches.responses, lobe, s, u_base, u_more[1])
                             step = wp.cw_mul(throughput, out.weight)
                             lobe.diffuse_share = out.diffuse_share
                             if depth == 0:

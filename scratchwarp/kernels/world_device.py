@@ -9,6 +9,7 @@ from ..scratches.curves_device import SegmentArrays
 from ..scratches.layer_device import LayerData
 from ..scratches.variation_device import VariationData
 from .glint_arrays_device import GlintArrays
+from .groove_arrays_device import GrooveArrays
 from .maps_device import MapSet
 
 wp.set_module_options({"enable_backward": False})
@@ -38,3 +39,4 @@ class ScratchSet:
     tables: TableArrays
     responses: ResponseArrays
     glints: GlintArrays
+    grooves: GrooveArrays  # those laid out one by one

@@ -105,6 +105,7 @@ class EffectPlan:
         window: (x0, x1, y0, y1) of the pixels rendered, the maxima exclusive.
         layers: for each material of the scene its sublayers. tables: what to simulate. responses: the others.
         waves: for each material what of it diffracts (a ``waves.WavePlan``), or None.
+        grooves: for each material what of it is laid out groove by groove (a ``grooves.GroovePlan``), or None.
         bases: for each material the response that stands in for its base, or -1.
         warnings: what cannot be honoured. seconds: how long planning took.
     """
@@ -121,6 +122,7 @@ class EffectPlan:
     responses: tuple[ResponsePlan, ...] = ()
     waves: tuple[Any, ...] = ()
     bases: tuple[int, ...] = ()
+    grooves: tuple[Any, ...] = ()
 
     def __post_init__(self) -> None:
         put(self, effects=MappingProxyType(dict(self.effects)), numbers=MappingProxyType(dict(self.numbers)))

@@ -15,6 +15,7 @@ from ..scene import DistantLight, Material, PreviewSurface, Scene, ScratchSurfac
 from ..scene.light import Light
 from ..scratches import KINDS, ORIENTED
 from .choice import LayerPlan, ResponsePlan, TablePlan
+from .groove_effects import GROOVE_EFFECTS
 from .occlusion import can_occlude
 from .wave_effects import WAVE_EFFECTS
 
@@ -34,6 +35,7 @@ class Facts:
     responses: tuple[ResponsePlan, ...] = ()
     waves: tuple[Any, ...] = ()
     bases: tuple[int, ...] = ()
+    grooves: tuple[Any, ...] = ()
 
     @property
     def replaced(self) -> set[str]:
@@ -132,13 +134,6 @@ def _orientation(f: Facts) -> Answer:
     subs = [p.sublayer for p in f.every if p.sublayer.distribution in ORIENTED]
     found = [x.layer.label for x in subs if x.layer.orientation_primvar or x.layer.orientation_texture >= 0]
     return _answer(found, "maps turn the scratches of these layers", "no layer has a map of directions")
-
-
-def _grooves(f: Facts) -> Answer:
-    asked = [p.sublayer.layer.label for p in f.every if p.sublayer.layer.model == "groove"]
-    if asked:
-        return False, "asked for by model groove, rendered by profile tables in this version", tuple(asked)
-    return False, "no layer asks for resolved grooves", ()
 
 
 def _textured(s: Any) -> bool:
@@ -248,7 +243,7 @@ EFFECTS: dict[str, Callable[[Facts], Answer]] = {
     "scratches.masks": _masks,
     "scratches.orientation": _orientation,
     **WAVE_EFFECTS,
-    "grooves": _grooves,
+    **GROOVE_EFFECTS,
     "base.preview": lambda f: _surfaces(
         f, lambda s: isinstance(s, PreviewSurface), "UsdPreviewSurface bases", "no UsdPreviewSurface base"
     ),

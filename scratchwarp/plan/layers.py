@@ -176,8 +176,6 @@ def _complaints(material: Material, layer: Layer) -> list[str]:
     said = []
     if layer.model == "diffraction" and material.wave is None:
         said.append(f"{layer.label}: model diffraction needs ScratchWaveAPI on {material.path}; its table is used")
-    if layer.model == "groove":
-        said.append(f"{layer.label}: model {layer.model} is rendered by its profile table for now")
     if layer.model == "normalMap" and layer.normal_map is None:
         why = "no normalTexture, which is read of layers of that model alone"
         said.append(f"{layer.label}: model normalMap has {why}; its table is used")

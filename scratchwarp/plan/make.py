@@ -10,12 +10,12 @@ from ..scene import Layer, Material, Scene, Settings
 from .choice import EffectChoice, EffectPlan, LayerPlan, ResponsePlan, TablePlan
 from .cost import shares
 from .effects import EFFECTS, Facts, sampled_lights
+from .grooves import laid_out, plan_grooves
 from .layers import plan_layers, reflector
 from .models import base_responses
 from .resolve import resolve
 from .waves import complaints, diffracts, plan_waves
 
-_MISSING = ("grooves",)  # authored and planned, but not rendered yet
 Layers = tuple[tuple[LayerPlan, ...], ...]
 
 
@@ -38,15 +38,22 @@ def make_plan(scene: Scene, settings: Settings | None = None, earlier: EffectPla
     def waved(material: Material, layer: Layer) -> bool:
         return forced.get("diffraction", True) and diffracts(material, layer)
 
+    def grooved(material: Material, layer: Layer) -> bool:
+        return forced.get("grooves", True) and laid_out(material, layer)
+
+    def elsewhere(material: Material, layer: Layer) -> bool:
+        return waved(material, layer) or grooved(material, layer)
+
     # closed forms along cones need tables whose sums follow from those of their slices
     summed = forced.get("lights.closedForm", any(MODELS[type(light)].arcs is not None for light in scene.lights))
     try:
         known = earlier.tables if earlier is not None and earlier.settings.max_error == decided.max_error else ()
         layers, tables, responses, warnings = plan_layers(
-            scene, allowed, decided.max_error, known, decided.model, waved, summed
+            scene, allowed, decided.max_error, known, decided.model, elsewhere, summed
         )
         waves = plan_waves(scene, waved, reflector, decided.model)
         warnings += complaints(waves)
+        grooves = plan_grooves(scene, grooved, decided.model)
         used = sorted({m for instance in scene.instances for m in instance.materials})
         responses, bases = base_responses(scene, used, responses, lambda effect: forced.get(effect, True))
         far = ""
@@ -58,7 +65,8 @@ def make_plan(scene: Scene, settings: Settings | None = None, earlier: EffectPla
             tables = tables if any(plan.table >= 0 for own in layers for plan in own) else ()
     except ValueError as error:
         raise ValueError(f"{scene.path}: {error}") from None
-    facts = Facts(scene, decided, tuple(scene.materials[i] for i in used), layers, tables, responses, waves, bases)
+    materials = tuple(scene.materials[i] for i in used)
+    facts = Facts(scene, decided, materials, layers, tables, responses, waves, bases, grooves)
     effects = {}
     for name, rule in EFFECTS.items():
         enabled, reason, prims = rule(facts)
@@ -76,10 +84,6 @@ def make_plan(scene: Scene, settings: Settings | None = None, earlier: EffectPla
     layers, tables = _without(effects, layers, tables, responses)
     by_cost = shares(effects, layers, counts, decided.max_depth or 1)
     effects = {n: replace(c, share=by_cost.get(n, 0.0)) for n, c in effects.items()}
-    warnings += tuple(
-        f"effects: {name} cannot be forced on in this version" for name in _MISSING if effects[name].enabled
-    )
-    effects |= {name: replace(effects[name], enabled=False) for name in _MISSING}
     warnings += tuple(
         f"{light.path}: its shadow link is not honoured, everything casts its shadow"
         for light in scene.lights
@@ -115,6 +119,7 @@ def make_plan(scene: Scene, settings: Settings | None = None, earlier: EffectPla
         responses=responses,
         waves=waves,
         bases=bases,
+        grooves=grooves,
         seconds=time.perf_counter() - start,
     )
 

@@ -16,12 +16,15 @@ class Strip:
 
 @wp.struct
 class Grid:
-    """Cells of edge ``cell`` from ``origin``; those of cell (i, j) are ``items[starts[k]]`` on, k = j columns + i."""
+    """Cells of edge ``cell`` from ``origin``; those of cell (i, j) are ``items[starts[k]]`` on, k = first + j columns
+    + i. ``first``: where its cells begin in ``starts``; several grids can share the arrays.
+    """
 
     origin: wp.vec2d
     cell: wp.float64
     columns: int
     rows: int
+    first: int
     starts: wp.array(dtype=int)
     items: wp.array(dtype=int)
 

@@ -115,8 +115,7 @@ def test_what_scratches_do_can_be_forced_off():
     assert once.tables[0].max_bounces == 1 and "by itself on" in once.effects["scratches.interreflection"].reason
     assert forced("scratches.fresnel").tables[0].fresnel is None
     assert forced("scratches.table").tables == () and not any(forced("scratches.table").layers)
-    missing = forced("grooves", True)
-    assert not missing.on("grooves") and "grooves cannot be forced on" in missing.warnings[0]
+    assert forced("grooves", True).on("grooves")
 
 
 @pytest.mark.parametrize(

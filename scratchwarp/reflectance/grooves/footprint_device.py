@@ -156,13 +156,14 @@ def direction_of_lines(
     return result
 
 
-def make_footprint_mean(Material: Any, radiance: Any) -> Any:
+def make_footprint_mean(Material: Any, radiance: Any, crossings: bool = True) -> Any:
     """The device function ``mean(grooves, ids, count, footprint, o, i, material, slices, chord) -> FootprintMean``.
 
     ``radiance(material: Material, path, n, o, i) -> vec3d`` gives what a facet of normal ``n`` sends to ``o`` under
     unit perpendicular irradiance from ``i``; ``Material`` is its struct, ``path`` the groove's number (-1 the ground).
     ``ids[0 .. count - 1]``: every piece that ``touches`` says yes to. ``chord`` 1 is exact, 0 Bosch's
-    larger axis. Below the horizon nothing is seen or lit.
+    larger axis. Below the horizon nothing is seen or lit. ``crossings`` False compiles one line alone, for grooves that
+    all run in parallel and end nowhere near.
     """
 
     @wp.func
@@ -288,11 +289,12 @@ def make_footprint_mean(Material: Any, radiance: Any) -> Any:
                     slope_i = slope_of(i)
                 first = grooves.pieces[ids[0]]
                 parallel = bool(True)
-                for a in range(count):
-                    piece = grooves.pieces[ids[a]]
-                    turn = piece.along[0] * first.along[1] - piece.along[1] * first.along[0]
-                    if wp.abs(turn) > wp.float64(1e-12) or not passes_through(grooves, piece, f, slope_o, slope_i):
-                        parallel = False
+                if wp.static(crossings):
+                    for a in range(count):
+                        piece = grooves.pieces[ids[a]]
+                        turn = piece.along[0] * first.along[1] - piece.along[1] * first.along[0]
+                        if wp.abs(turn) > wp.float64(1e-12) or not passes_through(grooves, piece, f, slope_o, slope_i):
+                            parallel = False
                 if parallel:
                     m = first.across
                     reach = half_extent(f, m)
@@ -301,18 +303,19 @@ def make_footprint_mean(Material: Any, radiance: Any) -> Any:
                     else:
                         reach = wp.max(wp.abs(wp.dot(f.a1, m)), wp.abs(wp.dot(f.a2, m)))
                         result = whole_line(grooves, ids, count, f.center, reach * m, UNIFORM, o, i, slope_i, material)
-                else:
-                    w = direction_of_lines(grooves, ids, count, f, slope_o, slope_i)
-                    along = w[0] * f.a1 + w[1] * f.a2
-                    across = w[0] * f.a2 - w[1] * f.a1
-                    for k in range(slices):
-                        angle = PI * wp.float64(k + 1) / wp.float64(slices + 1)
-                        share = wp.float64(2.0) * wp.sin(angle) * wp.sin(angle) / wp.float64(slices + 1)
-                        base = f.center + wp.cos(angle) * across
-                        step = wp.sin(angle) * along
-                        part = whole_line(grooves, ids, count, base, step, UNIFORM, o, i, slope_i, material)
-                        result.radiance += share * part.radiance
-                        result.found += share * part.found
+                if wp.static(crossings):
+                    if not parallel:
+                        w = direction_of_lines(grooves, ids, count, f, slope_o, slope_i)
+                        along = w[0] * f.a1 + w[1] * f.a2
+                        across = w[0] * f.a2 - w[1] * f.a1
+                        for k in range(slices):
+                            angle = PI * wp.float64(k + 1) / wp.float64(slices + 1)
+                            share = wp.float64(2.0) * wp.sin(angle) * wp.sin(angle) / wp.float64(slices + 1)
+                            base = f.center + wp.cos(angle) * across
+                            step = wp.sin(angle) * along
+                            part = whole_line(grooves, ids, count, base, step, UNIFORM, o, i, slope_i, material)
+                            result.radiance += share * part.radiance
+                            result.found += share * part.found
         return result
 
     return mean

@@ -29,7 +29,7 @@ def find_near(
     count = int(0)
     for j in range(j0, j1 + 1):
         for i in range(i0, i1 + 1):
-            cell = j * grid.columns + i
+            cell = grid.first + j * grid.columns + i
             for e in range(grid.starts[cell], grid.starts[cell + 1]):
                 k = grid.items[e]
                 known = bool(False)

@@ -59,20 +59,25 @@ def _simplified(path: np.ndarray) -> np.ndarray:
 
 def _joined(paths: list[tuple[np.ndarray, np.ndarray, int]]) -> list[tuple[np.ndarray, np.ndarray, int]]:
     """Paths that go straight on where another one of the same section ends, made one."""
-    done = list(paths)
-    k = 0
-    while k < len(done):
-        points, section, number = done[k]
-        for j, (other, same, _) in enumerate(done):
-            if j == k or section.shape != same.shape or not np.array_equal(section, same):
-                continue
-            if np.array_equal(points[-1], other[0]) and _is_straight(_tangents(points)[-1], _tangents(other)[0]):
-                done[k] = (_simplified(np.concatenate([points, other[1:]])), section, number)
-                del done[j]
-                k = -1
-                break
-        k += 1
-    return done
+    done: list[tuple[np.ndarray, np.ndarray, int] | None] = list(paths)
+    starting: dict[bytes, list[int]] = {}
+    for k, (points, _, _) in enumerate(paths):
+        starting.setdefault((points[0] + 0.0).tobytes(), []).append(k)
+    for k in range(len(done)):
+        own = done[k]
+        while own is not None:
+            points, section, number = own
+            for j in starting.get((points[-1] + 0.0).tobytes(), ()):
+                other = done[j]
+                if j == k or other is None or not (section is other[1] or np.array_equal(section, other[1])):
+                    continue
+                if _is_straight(_tangents(points[-2:])[0], _tangents(other[0][:2])[0]):
+                    own = done[k] = (_simplified(np.concatenate([points, other[0][1:]])), section, number)
+                    done[j] = None
+                    break
+            else:
+                own = None
+    return [row for row in done if row is not None]
 
 
 class Pattern:

@@ -1,0 +1,89 @@
+"""What grooves read: the pieces of all patterns, where the grid of each begins, and facets of their own."""
+
+import warp as wp
+
+from ..optics.frames_device import Frame
+from ..reflectance.base_device import Base
+from ..reflectance.grooves.footprint_device import Footprint
+from ..reflectance.grooves.solid_device import GrooveSet, Piece
+from ..scratches.grid_device import Grid
+
+wp.set_module_options({"enable_backward": False})
+
+GROOVE_ROOM = wp.constant(64)  # pieces near a footprint
+
+
+@wp.struct
+class GrooveRecord:
+    """One pattern, laid out in micrometres over a surface: ``scale`` micrometres a unit of u and of v; ``width``, the
+    mean of its grooves. The other fields are those of ``GrooveSet`` and ``Grid``."""
+
+    scale: wp.vec2d
+    width: wp.float64
+    bottom: wp.float64
+    top: wp.float64
+    skin: wp.float64
+    mixed: int
+    origin: wp.vec2d
+    cell: wp.float64
+    columns: int
+    rows: int
+    first: int
+
+
+@wp.struct
+class GrooveArrays:
+    """All patterns.
+
+    Attributes:
+        of_face: pattern of each triangle, or -1. records: of patterns. pieces, vertices, starts, items: of all of them.
+        own: of each path, what its facets are made of in ``bases``, or -1 for what the surface is made of.
+        slices: lines over a footprint where grooves cross or end. bounces: facets met after the first one.
+        near, far: widths of a footprint in widths of a groove below which grooves are laid out, above which not.
+    """
+
+    of_face: wp.array(dtype=int)
+    records: wp.array(dtype=GrooveRecord)
+    pieces: wp.array(dtype=Piece)
+    vertices: wp.array(dtype=wp.vec2d)
+    starts: wp.array(dtype=int)
+    items: wp.array(dtype=int)
+    own: wp.array(dtype=int)
+    bases: wp.array(dtype=Base)
+    slices: int
+    bounces: int
+    near: float
+    far: float
+
+
+@wp.struct
+class GrooveSpot:
+    """A footprint on a pattern.
+
+    ``frame``: of the surface, in the world; ``turn``, ``mirror``: its x and y in the pattern, y mirrored where mirror
+    is -1; ``o``: towards the viewer, in the pattern; ``near``: 1 where grooves are to be laid out; ``ratio``: width of
+    the footprint in widths of a groove.
+    """
+
+    grooves: GrooveSet
+    grid: Grid
+    footprint: Footprint
+    frame: Frame
+    turn: wp.vec2d
+    mirror: wp.float64
+    o: wp.vec3d
+    near: int
+    ratio: float
+
+
+@wp.struct
+class FacetStuff:
+    """What facets under a footprint are made of: the surface's ``base``, scaled lobes, x axis of its anisotropy in the
+    pattern; ``own`` and ``bases`` as in ``GrooveArrays``."""
+
+    base: Base
+    w_diffuse: float
+    w_specular: float
+    x: wp.vec3
+    own: wp.array(dtype=int)
+    bases: wp.array(dtype=Base)

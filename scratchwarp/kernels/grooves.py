@@ -1,0 +1,186 @@
+"""Layers that are laid out groove by groove -> device arrays: one pattern and grid for each material and surface."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import warp as wp
+
+from ..plan import EffectPlan
+from ..plan.grooves import BOUNCES, FAR, LINES, NEAR, GrooveLayerPlan, GroovePlan
+from ..plan.layers import conductor_index
+from ..reflectance.base_device import CONDUCTOR, DIELECTRIC, SCHLICK, Base
+from ..reflectance.grooves import Pattern
+from ..reflectance.grooves.solid_device import Piece
+from ..scene import Scene
+from ..scratches.paths import Path, lay_out
+from .geometry import PackedGeometry
+from .groove_arrays_device import GrooveArrays, GrooveRecord
+from .key import KernelKey
+
+MOST_PATHS = 400_000
+_INHERITS = -1.0  # roughness of facets that are as rough as the surface
+
+Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True, eq=False)
+class PackedGrooves:
+    """Device arrays; ``count``: pieces of grooves; ``memory``: bytes of pieces, cross-sections and grids."""
+
+    arrays: GrooveArrays
+    count: int = 0
+    memory: int = 0
+
+
+def _base(own: Any) -> Base:
+    """What facets are made of, from a ``ScratchSurface`` or "mirror"."""
+    b: Any = Base()
+    b.alpha_x = b.alpha_y = _INHERITS
+    b.clearcoat_alpha, b.ior, b.specular = 1.0, 1.5, 1.0
+    b.f90 = wp.vec3(1.0, 1.0, 1.0)
+    if own == "mirror":
+        b.fresnel, b.f0 = int(SCHLICK), wp.vec3(1.0, 1.0, 1.0)
+    elif own.base == "conductor":
+        eta, k = conductor_index(own)
+        b.fresnel, b.eta, b.k = int(CONDUCTOR), wp.vec3(*eta), wp.vec3(*k)
+    elif own.base == "dielectric":
+        b.fresnel, b.ior, b.diffuse = int(DIELECTRIC), own.ior, wp.vec3(*own.color)
+    else:
+        b.specular, b.diffuse = 0.0, wp.vec3(*own.color)
+    return b
+
+
+def _section(plan: GrooveLayerPlan, path: Path) -> Array:
+    """The cross-section of a path [um], its middle at x = 0."""
+    layer = plan.layer
+    deep = path.depth / layer.depth * layer.width if layer.depth > 0.0 else path.width
+    return (plan.section - (0.5, 0.0)) * (path.width, deep)
+
+
+class _Joined:
+    """Arrays of several patterns, one after the other."""
+
+    def __init__(self) -> None:
+        self.tables: list[Array] = []
+        self.vertices: list[Array] = []
+        self.starts: list[Array] = []
+        self.items: list[Array] = []
+        self.own: list[Array] = []
+        self.records: list[Any] = []
+        self.count = self.corners = self.cells = self.listed = self.laid = 0
+
+    def add(self, pattern: Pattern, own: Array, scale: Array, width: float) -> int:
+        """Number of a pattern; ``own``: the material of each of its paths."""
+        table = pattern.table.copy()
+        self.own.append(own.astype(np.int32))
+        table["path"] += self.laid
+        table["first"] += self.corners
+        table["partner"] += np.where(table["partner"] >= 0, self.count, 0)
+        vertices = pattern.grooves.vertices.numpy()
+        grid = pattern.grid
+        starts, items = grid.data.starts.numpy(), grid.data.items.numpy()
+        r: Any = GrooveRecord()
+        r.scale, r.width = wp.vec2d(*scale), wp.float64(width)
+        for name in ("bottom", "top", "skin", "mixed"):
+            setattr(r, name, getattr(pattern.grooves, name))
+        for name in ("origin", "cell", "columns", "rows"):
+            setattr(r, name, getattr(grid.data, name))
+        r.first = self.cells
+        self.tables.append(table)
+        self.vertices.append(vertices)
+        self.starts.append(starts + self.listed)
+        self.items.append(items[: grid.listed] + self.count)
+        self.records.append(r)
+        self.count += len(table)
+        self.corners += len(vertices)
+        self.cells += len(starts)
+        self.listed += grid.listed
+        self.laid += pattern.count
+        return len(self.records) - 1
+
+    def pack(self, arrays: Any, device: str) -> int:
+        """Write everything to the device; bytes of it."""
+        table, vertices = np.concatenate(self.tables), np.concatenate(self.vertices)
+        starts, items = np.concatenate(self.starts).astype(np.int32), np.concatenate(self.items).astype(np.int32)
+        own = np.concatenate(self.own)
+        arrays.pieces = wp.array(table, dtype=Piece, device=device)
+        arrays.vertices = wp.array(vertices, dtype=wp.vec2d, device=device)
+        arrays.starts = wp.array(starts, dtype=int, device=device)
+        arrays.items = wp.array(items, dtype=int, device=device)
+        arrays.own = wp.array(own, dtype=int, device=device)
+        arrays.records = wp.array(self.records, dtype=GrooveRecord, device=device)
+        return int(table.nbytes + vertices.nbytes + starts.nbytes + items.nbytes + own.nbytes)
+
+
+def _handed(shape: PackedGeometry) -> Array:
+    """-1 for triangles whose mapping is mirrored."""
+    g = shape.arrays
+    p = g.points.numpy().reshape(-1, 3, 3).astype(float)
+    normal = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
+    turned = np.cross(g.dpdu.numpy().astype(float), g.dpdv.numpy().astype(float))
+    return np.where((normal * turned).sum(1) < 0.0, -1.0, 1.0)
+
+
+def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, device: str = "cpu") -> PackedGrooves:
+    """What the plan's grooves need; empty arrays where nothing is laid out. Raises ValueError where that would be more
+    than ``MOST_PATHS`` paths."""
+    arrays: Any = GrooveArrays()
+    if not key.grooves or shape.mesh is None:
+        return PackedGrooves(arrays)
+    g = shape.arrays
+    material, instance = g.material.numpy(), g.instance.numpy()
+    uv = g.uvs.numpy().reshape(-1, 3, 2).astype(float)
+    scales, handed = g.pattern_scale.numpy(), _handed(shape)
+    of_face = np.full(len(material), -1, np.int32)
+    joined, known = _Joined(), {}
+    bases: list[Any] = []
+    for m, groove in enumerate(plan.grooves):
+        if groove is None:
+            continue
+        numbers = []
+        for own in groove.layers:
+            numbers.append(len(bases) if own.own is not None else -1)
+            bases += [_base(own.own)] if own.own is not None else []
+        for i in np.unique(instance[material == m]):
+            for hand in (1.0, -1.0):
+                faces = (material == m) & (instance == i) & (handed == hand)
+                if not faces.any():
+                    continue
+                low, high = uv[faces].min((0, 1)), uv[faces].max((0, 1))
+                asked = (m, hand, *np.round(np.concatenate([scales[i], low, high]), 9).tolist())
+                if asked not in known:
+                    known[asked] = _pattern(scene, groove, numbers, low, high, scales[i], hand, joined)
+                of_face[faces] = known[asked]
+    arrays.of_face = wp.array(of_face, dtype=int, device=device)
+    memory = joined.pack(arrays, device) if joined.records else 0
+    arrays.bases = wp.array(bases or [Base()], dtype=Base, device=device)
+    arrays.slices = max(4, -(-LINES // (plan.settings.spp or 1)))
+    arrays.bounces, arrays.near, arrays.far = BOUNCES, NEAR, FAR
+    return PackedGrooves(arrays, joined.count, memory)
+
+
+def _pattern(
+    scene: Scene, groove: GroovePlan, numbers: list[int], low: Array, high: Array, scale: Array, hand: float,
+    joined: _Joined,
+) -> int:  # fmt: skip
+    """Number of the pattern of a material over a part of a surface, -1 where it has no groove."""
+    paths: list[Path] = []
+    sections: list[Array] = []
+    own: list[int] = []
+    for plan, number in zip(groove.layers, numbers, strict=True):
+        curves = [scene.curves[c] for c in plan.layer.curves]
+        laid = lay_out(plan.layer, low, high, scale, hand, curves)
+        paths += laid
+        sections += [_section(plan, path) for path in laid]
+        own += [number] * len(laid)
+        if len(paths) > MOST_PATHS:
+            raise ValueError(
+                f"{plan.layer.label}: it calls for {len(paths)} grooves, more than {MOST_PATHS}; set its model to "
+                "table, or make them longer or wider"
+            )
+    pattern = Pattern([path.points for path in paths], sections)
+    if not len(pattern.table):
+        return -1
+    width = float(np.mean([path.width for path in paths]))
+    return joined.add(pattern, np.array(own), scale * np.array([1.0, hand]), width)

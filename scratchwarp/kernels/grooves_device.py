@@ -1,0 +1,318 @@
+"""Grooves one by one in a render: where a footprint lies on their pattern, and what is seen there.
+
+Lights without extent are exact, the mean over the footprint (``reflectance.grooves``). All else is found by paths: one
+ray from a random point of the footprint finds a facet, which is lit like any surface - by light sampling and by its own
+lobes, weighed against one another - but for the shadows of the other facets; a path that meets another facet goes on
+there until it leaves.
+"""
+
+import warp as wp
+
+from ..optics.frames_device import Frame, frame_with_tangent, to_local, to_world
+from ..optics.hash_device import pcg_hash
+from ..optics.sampling_device import sample_concentric_disk
+from ..optics.sobol_device import sobol_2d
+from ..reflectance.base_device import Base, base_eval, base_eval_pdf, base_sample
+from ..reflectance.grooves.cast_device import cast, path_of
+from ..reflectance.grooves.footprint_device import Footprint, make_footprint_mean, slope_of
+from ..reflectance.grooves.near_device import find_near
+from .bounce_device import Scatter
+from .direct_device import make_arrives, models_of
+from .geometry_device import Geometry, Surface, uv_motion
+from .groove_arrays_device import GROOVE_ROOM, FacetStuff, GrooveArrays, GrooveSpot
+from .key import KernelKey
+from .lobe_device import Lobe, largest, mirrored_at, power_heuristic
+from .material_device import MaterialArrays
+from .world_device import LightSet
+
+wp.set_module_options({"enable_backward": False})
+
+GRAZING = wp.constant(wp.float64(1e-9))
+LEVEL = wp.constant(wp.float64(1e-3))  # rays lower than this are followed as far as those
+SEED = wp.constant(wp.uint32(0x6A09E667))
+
+
+@wp.struct
+class GrooveLight:
+    """Light that lights send along grooves to the viewer and in w the rays it took; where a path goes on."""
+
+    received: wp.vec4
+    out: Scatter
+
+
+@wp.func
+def in_pattern(spot: GrooveSpot, w: wp.vec3) -> wp.vec3d:
+    """A world direction in the pattern."""
+    local = to_local(spot.frame, w)
+    x = wp.float64(local[0])
+    y = spot.mirror * wp.float64(local[1])
+    return wp.normalize(
+        wp.vec3d(spot.turn[0] * x - spot.turn[1] * y, spot.turn[1] * x + spot.turn[0] * y, wp.float64(local[2]))
+    )
+
+
+@wp.func
+def out_of_pattern(spot: GrooveSpot, d: wp.vec3d) -> wp.vec3:
+    """A direction in the pattern in the world."""
+    x = spot.turn[0] * d[0] + spot.turn[1] * d[1]
+    y = spot.mirror * (spot.turn[0] * d[1] - spot.turn[1] * d[0])
+    return wp.normalize(to_world(spot.frame, wp.vec3(float(x), float(y), float(d[2]))))
+
+
+@wp.func
+def near_ray(spot: GrooveSpot, p: wp.vec3d, d: wp.vec3d, ids: wp.array(dtype=int)) -> int:
+    """The pieces that a ray from ``p`` between the lowest and the highest z may meet; how many were written."""
+    f = Footprint()
+    f.center = wp.vec2d(p[0], p[1])
+    down = wp.max(wp.abs(d[2]), LEVEL)
+    slope = wp.vec2d(d[0] / down, d[1] / down)
+    none = wp.vec2d(wp.float64(0.0), wp.float64(0.0))
+    return wp.min(find_near(spot.grooves, spot.grid, f, none, slope, ids, GROOVE_ROOM), GROOVE_ROOM)
+
+
+@wp.func
+def facet_base(stuff: FacetStuff, path: int) -> Base:
+    """What a facet of a path is made of, as rough as the surface."""
+    result = stuff.base
+    if path >= 0:
+        own = stuff.own[path]
+        if own >= 0:
+            result = stuff.bases[own]
+            if result.alpha_x < 0.0:
+                result.alpha_x = stuff.base.alpha_x
+                result.alpha_y = stuff.base.alpha_y
+    return result
+
+
+@wp.func
+def stuff_radiance(stuff: FacetStuff, path: int, n: wp.vec3d, o: wp.vec3d, i: wp.vec3d) -> wp.vec3d:
+    """Radiance of a facet towards ``o`` under unit perpendicular irradiance from ``i``."""
+    frame = frame_with_tangent(wp.vec3(float(n[0]), float(n[1]), float(n[2])), stuff.x)
+    wo = to_local(frame, wp.vec3(float(o[0]), float(o[1]), float(o[2])))
+    wi = to_local(frame, wp.vec3(float(i[0]), float(i[1]), float(i[2])))
+    value = base_eval(facet_base(stuff, path), wo, wi, stuff.w_diffuse, stuff.w_specular)
+    return wp.vec3d(wp.float64(value[0]), wp.float64(value[1]), wp.float64(value[2]))
+
+
+def make_grooves(key: KernelKey, transmittance):
+    """(spot, grooves): a footprint's place on a pattern, and what is seen there, compiled for ``key``."""
+    models = models_of(key)
+    linked, arrives = make_arrives(key, transmittance)
+    footprint_mean = make_footprint_mean(FacetStuff, stuff_radiance, key.groove_crossings)
+
+    @wp.func
+    def spot_at(
+        arrays: GrooveArrays, g: Geometry, s: Surface, frame: Frame, wo: wp.vec3, step_x: wp.vec3, step_y: wp.vec3
+    ) -> GrooveSpot:
+        """The footprint whose edges are ``step_x``, ``step_y`` as an ellipse of the same area on the pattern."""
+        spot = GrooveSpot()
+        number = arrays.of_face[s.face]
+        if number >= 0:
+            record = arrays.records[number]
+            spot.grooves.pieces = arrays.pieces
+            spot.grooves.vertices = arrays.vertices
+            spot.grooves.bottom = record.bottom
+            spot.grooves.top = record.top
+            spot.grooves.skin = record.skin
+            spot.grooves.mixed = record.mixed
+            spot.grid.origin = record.origin
+            spot.grid.cell = record.cell
+            spot.grid.columns = record.columns
+            spot.grid.rows = record.rows
+            spot.grid.first = record.first
+            spot.grid.starts = arrays.starts
+            spot.grid.items = arrays.items
+            sx = record.scale[0]
+            sy = record.scale[1]
+            spot.frame = frame_with_tangent(frame.n, g.dpdu[s.face])
+            # the rotation (and mirror image) nearest to the mapping
+            mx = uv_motion(g, s, spot.frame.x)
+            my = uv_motion(g, s, spot.frame.y)
+            m00 = wp.float64(mx[0]) * sx
+            m10 = wp.float64(mx[1]) * sy
+            m01 = wp.float64(my[0]) * sx
+            m11 = wp.float64(my[1]) * sy
+            spot.mirror = wp.float64(1.0)
+            if m00 * m11 - m01 * m10 < wp.float64(0.0):
+                spot.mirror = wp.float64(-1.0)
+            turn = wp.vec2d(m00 + spot.mirror * m11, m10 - spot.mirror * m01)
+            size = wp.length(turn)
+            spot.turn = wp.vec2d(wp.float64(1.0), wp.float64(0.0))
+            if size > wp.float64(0.0):
+                spot.turn = turn / size
+            spot.o = in_pattern(spot, wo)
+            ax = uv_motion(g, s, step_x)
+            ay = uv_motion(g, s, step_y)
+            equal = wp.float64(0.5641895835477563)  # 1 / sqrt(pi)
+            spot.footprint.center = wp.vec2d(s.uv[0] * sx, s.uv[1] * sy)
+            spot.footprint.a1 = equal * wp.vec2d(wp.float64(ax[0]) * sx, wp.float64(ax[1]) * sy)
+            spot.footprint.a2 = equal * wp.vec2d(wp.float64(ay[0]) * sx, wp.float64(ay[1]) * sy)
+            spot.ratio = float((wp.length(spot.footprint.a1) + wp.length(spot.footprint.a2)) / record.width)
+            if spot.o[2] > GRAZING:
+                ids = wp.zeros(shape=GROOVE_ROOM, dtype=int)
+                none = wp.vec2d(wp.float64(0.0), wp.float64(0.0))
+                found = find_near(spot.grooves, spot.grid, spot.footprint, slope_of(spot.o), none, ids, GROOVE_ROOM)
+                # what stands out of the plane casts shadows on bare ground, too
+                if found > 0 or spot.grooves.top > wp.float64(0.0):
+                    spot.near = 1
+        return spot
+
+    @wp.func
+    def lit(spot: GrooveSpot, q: wp.vec3d, n: wp.vec3d, i: wp.vec3d) -> bool:
+        """Whether no groove stands between ``q`` on a facet and the light."""
+        result = bool(False)
+        if i[2] > GRAZING and wp.dot(n, i) > wp.float64(0.0):
+            result = bool(True)
+            if q[2] < spot.grooves.top - spot.grooves.skin:
+                ids = wp.zeros(shape=GROOVE_ROOM, dtype=int)
+                count = near_ray(spot, q, i, ids)
+                slope = slope_of(i)
+                up = wp.vec3d(slope[0], slope[1], wp.float64(1.0))
+                p = q + wp.float64(2.0) * spot.grooves.skin * n
+                limit = spot.grooves.top - q[2] + spot.grooves.skin
+                dark = cast(spot.grooves, ids, count, p, up, limit, 1, 0)
+                result = dark.distance == wp.float64(wp.inf)
+        return result
+
+    @wp.func
+    def facet_lit(
+        g: Geometry, arrays: MaterialArrays, lights: LightSet, spot: GrooveSpot, stuff: FacetStuff, bounce: int,
+        base: Base, frame: Frame, wo: wp.vec3, q: wp.vec3d, n: wp.vec3d, p: wp.vec3, ng: wp.vec3, instance: int,
+        slices: int, index: wp.uint32, dimension: int, seed: wp.uint32,
+    ) -> wp.vec4:  # fmt: skip
+        """What lights send to ``wo`` (in the facet's ``frame``) by light sampling at ``q``, and in w the rays it took.
+
+        At the first facet lights without extent count with their mean over the footprint.
+        """
+        total = wp.vec3(0.0, 0.0, 0.0)
+        rays = float(0.0)
+        for j in range(wp.static(len(models))):
+            for k in range(lights.starts[j], lights.starts[j + 1]):
+                light = lights.lights[k]
+                if linked(lights, light, instance):
+                    ls = wp.static(models[j].sample)(lights.arrays, light, p, sobol_2d(index, dimension + k, seed))
+                    if ls.pdf != 0.0 and wp.dot(ls.wi, ng) > 0.0:
+                        w_diffuse = stuff.w_diffuse
+                        w_specular = stuff.w_specular
+                        if wp.static(key.light_multipliers):
+                            w_diffuse *= light.diffuse
+                            w_specular *= light.specular
+                        i = in_pattern(spot, ls.wi)
+                        value = wp.vec3(0.0, 0.0, 0.0)
+                        exact = int(0)
+                        if bounce == 0 and light.delta == 1 and i[2] > GRAZING:
+                            ids = wp.zeros(shape=GROOVE_ROOM, dtype=int)
+                            f = spot.footprint
+                            found = find_near(
+                                spot.grooves, spot.grid, f, slope_of(spot.o), slope_of(i), ids, GROOVE_ROOM
+                            )
+                            if found <= GROOVE_ROOM:
+                                exact = 1
+                                own = stuff
+                                own.w_diffuse = w_diffuse
+                                own.w_specular = w_specular
+                                seen = footprint_mean(spot.grooves, ids, found, f, spot.o, i, own, slices, 1)
+                                r = seen.radiance
+                                value = wp.cw_mul(wp.vec3(float(r[0]), float(r[1]), float(r[2])), ls.radiance)
+                        if exact == 0 and lit(spot, q, n, i):
+                            terms = base_eval_pdf(base, wo, to_local(frame, ls.wi), w_diffuse, w_specular)
+                            density = terms.pdf
+                            if wp.static(key.light_multipliers):
+                                drawn = base_eval_pdf(
+                                    base, wo, to_local(frame, ls.wi), stuff.w_diffuse, stuff.w_specular
+                                )
+                                density = drawn.pdf
+                            value = wp.cw_mul(terms.value, ls.radiance)
+                            if ls.pdf > 0.0:
+                                value = value * (power_heuristic(ls.pdf, density) / ls.pdf)
+                        if largest(value) > 0.0:
+                            total += wp.cw_mul(value, arrives(g, arrays, light, p, ls.wi, ls.distance))
+                            if wp.static(key.shadows):
+                                rays += float(light.shadow)
+        return wp.vec4(total[0], total[1], total[2], rays)
+
+    @wp.func
+    def grooves(
+        data: GrooveArrays, g: Geometry, arrays: MaterialArrays, lights: LightSet, spot: GrooveSpot, lobe: Lobe,
+        s: Surface, p: wp.vec3, u: wp.vec2, v: float, index: wp.uint32, pair: int, dimension: int,
+        seed: wp.uint32,
+    ) -> GrooveLight:  # fmt: skip
+        """What a footprint shows of the lights, and one path that leaves it; ``lobe`` is that of the surface's base."""
+        result = GrooveLight()
+        out = Scatter()
+        stuff = FacetStuff()
+        stuff.base = lobe.base
+        stuff.w_diffuse = lobe.w_diffuse
+        stuff.w_specular = lobe.w_specular
+        x = in_pattern(spot, lobe.frame.x)
+        stuff.x = wp.vec3(float(x[0]), float(x[1]), float(x[2]))
+        stuff.own = data.own
+        stuff.bases = data.bases
+        more = pcg_hash(seed ^ SEED)
+        disk = sample_concentric_disk(sobol_2d(index, pair, more))
+        f = spot.footprint
+        at = f.center + wp.float64(disk[0]) * f.a1 + wp.float64(disk[1]) * f.a2
+        above = spot.grooves.top + wp.float64(1.0e6) * spot.grooves.skin
+        slope = slope_of(spot.o)
+        start = wp.vec3d(at[0] + above * slope[0], at[1] + above * slope[1], above)
+        d = -spot.o
+        ids = wp.zeros(shape=GROOVE_ROOM, dtype=int)
+        point = Footprint()
+        point.center = at
+        none = wp.vec2d(wp.float64(0.0), wp.float64(0.0))
+        count = find_near(spot.grooves, spot.grid, point, slope, none, ids, GROOVE_ROOM)
+        count = wp.min(count, GROOVE_ROOM)
+        weight = wp.vec3(lobe.scale, lobe.scale, lobe.scale)
+        bounce = int(0)
+        going = int(1)
+        drawn = wp.vec2(u[0], u[1])
+        choice = float(v)
+        lights_seed = wp.uint32(seed)
+        while going == 1:
+            going = int(0)
+            hit = cast(spot.grooves, ids, count, start, d, wp.float64(wp.inf), 0, 0)
+            if hit.distance < wp.float64(wp.inf):
+                q = start + hit.distance * d
+                n = hit.normal
+                base = facet_base(stuff, path_of(spot.grooves, hit.piece))
+                frame = frame_with_tangent(out_of_pattern(spot, n), lobe.frame.x)
+                own_wo = to_local(frame, out_of_pattern(spot, -d))
+                received = facet_lit(
+                    g, arrays, lights, spot, stuff, bounce, base, frame, own_wo, q, n, p, s.ng, s.instance,
+                    data.slices, index, dimension, lights_seed,
+                )  # fmt: skip
+                result.received += wp.cw_mul(wp.vec4(weight[0], weight[1], weight[2], 1.0), received)
+                b = base_sample(base, own_wo, drawn, choice, stuff.w_diffuse, stuff.w_specular)
+                if b.pdf > 0.0:
+                    weight = wp.cw_mul(weight, b.weight)
+                    away = to_world(frame, b.wi)
+                    d = in_pattern(spot, away)
+                    start = q + wp.float64(2.0) * spot.grooves.skin * n
+                    count = near_ray(spot, start, d, ids)
+                    blocked = cast(spot.grooves, ids, count, start, d, wp.float64(wp.inf), 1, 0)
+                    if blocked.distance == wp.float64(wp.inf):
+                        if d[2] > wp.float64(0.0):
+                            out.alive = 1
+                            out.direction = away
+                            out.pdf = wp.where(b.delta == 1, -1.0, b.pdf)
+                            out.weight = weight
+                            if wp.dot(away, s.ng) <= 0.0:
+                                out.direction = mirrored_at(away, s.ng)
+                                out.pdf = -1.0
+                            if wp.static(key.light_multipliers):
+                                whole = base_eval_pdf(base, own_wo, b.wi, stuff.w_diffuse, stuff.w_specular)
+                                part = base_eval_pdf(base, own_wo, b.wi, stuff.w_diffuse, 0.0)
+                                for c in range(3):
+                                    out.diffuse_share[c] = part.value[c] / wp.max(whole.value[c], 1.0e-20)
+                    elif wp.static(key.groove_bounces):
+                        if bounce < data.bounces and largest(weight) > 0.0:
+                            bounce += 1
+                            going = int(1)
+                            again = pcg_hash(more + wp.uint32(bounce))
+                            lights_seed = pcg_hash(again ^ SEED)
+                            drawn = sobol_2d(index, pair, again)
+                            choice = sobol_2d(index, pair + 1, again)[0]
+        result.out = out
+        return result
+
+    return spot_at, grooves

@@ -1,0 +1,36 @@
+"""How the effects of grooves laid out one by one are decided; rules as in ``effects``."""
+
+from collections.abc import Callable
+from typing import Any
+
+Answer = tuple[bool, str, tuple[str, ...]]
+
+
+def _found(f: Any, test: Callable[[Any], bool]) -> tuple[str, ...]:
+    plans = [own for own in f.grooves if own is not None and test(own)]
+    return tuple(dict.fromkeys(p.layer.label for own in plans for p in own.layers))
+
+
+def _grooves(f: Any) -> Answer:
+    found = _found(f, lambda own: True)
+    return bool(found), "laid out one by one" if found else "no layer is laid out groove by groove", found
+
+
+def _crossings(f: Any) -> Answer:
+    if not _found(f, lambda own: True):
+        return False, "no layer is laid out groove by groove", ()
+    found = _found(f, lambda own: own.crossings)
+    return bool(found), "they may cross, bend or end" if found else "parallel lines, which neither cross nor end", found
+
+
+def _interreflection(f: Any) -> Answer:
+    found = _found(f, lambda own: own.bounces)
+    return bool(found), "light goes on from facet to facet" if found else "no facet that light could go on to", found
+
+
+GROOVE_EFFECTS: dict[str, Callable[[Any], Answer]] = {
+    "grooves": _grooves,
+    "grooves.crossings": _crossings,
+    "grooves.interreflection": _interreflection,
+}
+"""Effect -> its rule."""

@@ -1,0 +1,140 @@
+"""Scratches of one layer as polylines in the plane of the surface, each with its width and depth."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..scene import Curves, Layer
+from .generate import random_scratches
+
+# A circle is drawn by chords that leave it by at most this part of a groove's width.
+CHORD = 0.02
+
+Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True)
+class Path:
+    """A polyline [k, 2] in micrometres over the surface, the width and the depth of its groove [um]."""
+
+    points: Array
+    width: float
+    depth: float
+
+
+def lay_out(
+    layer: Layer, low: Array, high: Array, scale: Array, handed: float = 1.0, curves: Sequence[Curves] = ()
+) -> list[Path]:
+    """The scratches of ``layer`` over uv from ``low`` to ``high``, on a surface of ``scale`` micrometres a unit of u
+    and of v. ``handed`` -1: of a mirrored mapping, angles turn the other way in uv and v counts backwards; the result
+    does as well. ``curves``: of distribution curves, in uv.
+
+    Regular patterns reach a little beyond the rectangle; those with a variation have widths and depths of their own.
+    """
+    size = np.asarray(scale, float) * (1.0, handed)  # micrometres a unit of u and of mirrored v
+    if layer.distribution == "curves" or layer.distribution in ("worley", "random"):
+        own = list(curves)
+        if layer.distribution != "curves":
+            unit = np.asarray(scale, float) if layer.space == "surface" else np.ones(2)
+            own = [random_scratches(layer, tuple(low.tolist()), tuple(high.tolist()), tuple(unit.tolist()))]
+        return [path for set in own for path in _polylines(set, size)]
+    plane = size if layer.space == "surface" else np.array([1.0, handed])  # from uv to the layer's own plane
+    corners = np.array([[u, v] for u in (low[0], high[0]) for v in (low[1], high[1])]) * plane
+    angles = [layer.angle] if layer.distribution != "crosshatch" else [layer.angle, layer.angle + layer.cross_angle]
+    made: list[Array] = []
+    if layer.width <= 0.0 or layer.pitch <= 0.0:
+        return []
+    for number, angle in enumerate(angles):
+        shift = layer.offset[1 - number % 2] * layer.pitch
+        if layer.distribution in ("linear", "crosshatch"):
+            made += _lines(layer, corners, angle, shift)
+        elif layer.distribution == "concentric":
+            made += _circles(layer, corners, np.array(layer.center) * plane, shift)
+        else:
+            made += _spiral(layer, corners, np.array(layer.center) * plane, shift)
+    rng = np.random.default_rng([layer.seed & 0xFFFFFFFF, *layer.name.encode()])
+    wide = 1.0 + layer.width_variation * (2.0 * rng.random(len(made)) - 1.0)
+    deep = 1.0 + layer.depth_variation * (2.0 * rng.random(len(made)) - 1.0)
+    back = np.abs(size / plane)
+    return [
+        _stretched(points, back, layer.width * w, layer.depth * d)
+        for points, w, d in zip(made, wide, deep, strict=True)
+    ]
+
+
+def _stretched(points: Array, back: Array, width: float, depth: float) -> Path:
+    """A path of the layer's own plane in micrometres: widths are stretched as the plane is across the path."""
+    run = np.abs(points[-1] - points[0]) if len(points) == 2 else np.abs(np.diff(points, axis=0)).sum(0)
+    along = run / max(float(np.linalg.norm(run)), 1e-300)
+    across = float(back[0] * back[1] / max(np.linalg.norm(back * along), 1e-300))
+    return Path(points * back, width * across, depth * across)
+
+
+def _polylines(curves: Curves, size: Array) -> list[Path]:
+    made = []
+    scale = math.sqrt(abs(size[0] * size[1]))
+    first = 0
+    for count in curves.counts:
+        own = slice(first, first + count)
+        first += count
+        width = float(curves.widths[own].mean()) * (scale if curves.width_unit == "uv" else 1.0)
+        depth = float(curves.depths[own].mean()) * (scale if curves.depth_unit == "uv" else 1.0)
+        if width > 0.0 and count > 1:
+            made.append(Path(curves.points[own, :2] * size, width, depth))
+    return made
+
+
+def _lines(layer: Layer, corners: Array, angle: float, shift: float) -> list[Array]:
+    along, across = np.array([math.cos(angle), math.sin(angle)]), np.array([-math.sin(angle), math.cos(angle)])
+    x, y = corners @ along, corners @ across + shift
+    margin = 0.5 * float(x.max() - x.min()) + 10.0 * layer.pitch
+    first = math.floor(float(y.min()) / layer.pitch) - 2
+    last = math.ceil(float(y.max()) / layer.pitch) + 2
+    ends = np.array([x.min() - margin, x.max() + margin])
+    return [
+        ends[:, None] * along + (i * layer.pitch + 0.5 * layer.width - shift) * across for i in range(first, last + 1)
+    ]
+
+
+def _radii(corners: Array, center: Array, layer: Layer) -> tuple[float, float]:
+    low, high = corners.min(0), corners.max(0)
+    nearest = float(np.linalg.norm(np.maximum(np.maximum(low - center, center - high), 0.0)))
+    return nearest - 2.0 * layer.pitch, float(np.linalg.norm(corners - center, axis=1).max()) + 2.0 * layer.pitch
+
+
+def _runs(points: Array, corners: Array, margin: float) -> list[Array]:
+    """The parts of a polyline within ``margin`` of the box about the corners."""
+    low, high = corners.min(0) - margin, corners.max(0) + margin
+    a, b = points[:-1], points[1:]
+    near = np.all((np.minimum(a, b) <= high) & (np.maximum(a, b) >= low), axis=1)
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], near, [False]]).astype(int)))
+    return [points[i : j + 1] for i, j in zip(edges[::2], edges[1::2], strict=True)]
+
+
+def _circles(layer: Layer, corners: Array, center: Array, shift: float) -> list[Array]:
+    made: list[Array] = []
+    nearest, farthest = _radii(corners, center, layer)
+    for i in range(math.floor((max(nearest, 0.0) + shift) / layer.pitch), math.ceil((farthest + shift) / layer.pitch)):
+        r = i * layer.pitch + 0.5 * layer.width - shift
+        if r > 0.5 * layer.width:
+            n = max(math.ceil(math.pi / math.sqrt(2.0 * min(CHORD * layer.width / r, 0.25))), 8)
+            turn = 2.0 * math.pi * np.arange(n) / n
+            ring = center + r * np.stack([np.cos(turn), np.sin(turn)], 1)
+            made += _runs(np.concatenate([ring, ring[:1]]), corners, 2.0 * layer.pitch)
+    return made
+
+
+def _spiral(layer: Layer, corners: Array, center: Array, shift: float) -> list[Array]:
+    nearest, farthest = _radii(corners, center, layer)
+    start = shift - 0.5 * layer.width  # radius = pitch turns - start
+    turns = [(max(nearest, 0.5 * layer.width) + start) / layer.pitch]
+    while layer.pitch * turns[-1] - start < farthest:
+        r = max(layer.pitch * turns[-1] - start, 0.5 * layer.width)
+        turns.append(turns[-1] + min(math.sqrt(8.0 * min(CHORD * layer.width / r, 0.25)), 0.5) / (2.0 * math.pi))
+    at = np.array(turns)
+    radii, angle = layer.pitch * at - start, 2.0 * math.pi * at
+    points = center + radii[:, None] * np.stack([np.cos(angle), np.sin(angle)], 1)
+    return _runs(points, corners, 2.0 * layer.pitch)
