@@ -27,7 +27,7 @@ from .world_device import LightSet
 
 _CORNERS = wp.constant(12)  # of the polygon that stands for a disk
 _DOME = wp.constant(16)  # parts of a dome's half circle
-_SHARE = wp.constant(4)  # of them that share a shadow ray
+_SHARE = wp.constant(8)  # of them that share a shadow ray
 FLAT = ("rect", "disk", "cylinder", "mesh")
 _MOST_KNOWN = 8  # lights whose visibility is kept from scratch to scratch
 
