@@ -116,12 +116,12 @@ def _shares(plan: WaveLayerPlan, deepest: float, wave: Wave) -> np.ndarray:
     return np.maximum((1.0 + rough**2 - 2.0 * rough * np.cos(k * depth)) @ weights, 0.0)
 
 
-def _largest(plan: WaveLayerPlan, segments: SegmentSet | None, number: int) -> tuple[float, float]:
-    """Greatest depth and width [um] of a layer."""
+def _largest(plan: WaveLayerPlan, segments: SegmentSet | None, number: int, stretched: float) -> tuple[float, float]:
+    """Greatest depth and width [um] of a layer; ``stretched``: micrometres of the uv square's side at most."""
     layer = plan.layer
-    sizes = [0.0, 0.0]
-    if layer.space != "uv":
-        sizes = [layer.depth * (1.0 + layer.depth_variation), layer.width * (1.0 + layer.width_variation)]
+    sizes = [layer.depth * (1.0 + layer.depth_variation), layer.width * (1.0 + layer.width_variation)]
+    if layer.space == "uv":
+        sizes = [size * stretched for size in sizes] if layer.distribution in REGULAR else [0.0, 0.0]
     if segments is not None and segments.count:
         rows = segments.segments.numpy()
         own = rows["layer"] == number
@@ -187,6 +187,8 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
     shares: list[np.ndarray] = []
     reflect: list[np.ndarray] = []
     most = max(len(at) for at in lams)
+    du, dv = shape.arrays.dpdu.numpy(), shape.arrays.dpdv.numpy()
+    stretched = 1e6 * float(np.sqrt(max((du * du).sum(1).max(), (dv * dv).sum(1).max())))
     wides: list[np.ndarray] = []
     outlines: list[np.ndarray] = []
     spectral = np.ones((len(numbers), COSINES, most), np.float32)
@@ -201,7 +203,7 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
         if own.layer.distribution in REGULAR:
             spread = own.layer.depth * own.layer.depth_variation / math.sqrt(3.0)
         row.depth_spread = spread
-        deepest, widest = _largest(own, segments, number)
+        deepest, widest = _largest(own, segments, number, stretched)
         row.share, row.share_count, row.share_step = len(shares) * SHARES, SHARES, deepest / (SHARES - 1)
         shares.append(_shares(own, deepest, w.wave))
         row.angles = int(w.wave.phase == "angleDependent")

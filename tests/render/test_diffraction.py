@@ -306,3 +306,15 @@ def test_incoherent_pattern_is_as_bright_as_its_orders():
     films = [render(grating(2.0, c, width=0.8, depth=0.2), scenes.dome(), (), size=2, spp=4) for c in (True, False)]
     coherent, incoherent = (f["scratches"].mean((0, 1)) for f in films)
     assert coherent @ LUMINANCE == pytest.approx(0.6 * (incoherent @ LUMINANCE), rel=0.1)
+
+
+def test_pattern_in_uv_is_the_pattern_in_micrometres():
+    """Widths, depths and pitches as fractions of a uv square of 2 cm."""
+    side = 0.02 * 1e6
+    light = DistantLight(path="/l", radiance=np.full(3, 2.0), direction=-toward(np.pi / 2, 1.3))
+    sized = {"width": 2.0, "depth": 0.4}
+    plain = render(grating(20.0, coherent=False, **sized), light, (), size=2)
+    in_uv = {"width": 2.0 / side, "depth": 0.4 / side, "space": "uv"}
+    mapped = render(grating(20.0 / side, coherent=False, **in_uv), light, (), size=2)
+    assert plain["scratches"].max() > 0.0
+    np.testing.assert_allclose(mapped["color"], plain["color"], rtol=1e-3)
