@@ -1,7 +1,7 @@
 """Explicit scratches, as lines on the surfaces of the materials whose layers draw them.
 
-Those that diffract, many and fine, are coloured by their direction in space: x red, y green, z blue. The others take
-the colour of their layer.
+Those that diffract, many and fine, are coloured by their direction in space: x red, y green, z blue; some of them stand
+for all. The others take the colour of their layer.
 """
 
 from dataclasses import replace
@@ -15,6 +15,7 @@ from .colors import shown
 from .display import pyvista
 from .meshes import world_corners
 
+MOST = 1500  # scratches that are drawn of a layer that diffracts: more would hide the surface and each other
 STEP = 0.004  # of the uv square, between the points of scratches that diffract
 
 
@@ -87,6 +88,8 @@ def add(plotter: Any, scene: Scene) -> list[Any]:
             lines = [line for line in polylines(scene, drawn, item.material) if len(line) > 1]
             if not lines:
                 continue
+            if diffracts:
+                lines = lines[:: len(lines) // MOST + 1]
             starts = np.cumsum([0] + [len(line) for line in lines[:-1]])
             ranges = [start + np.arange(len(line)) for line, start in zip(lines, starts, strict=True)]
             cells = [np.concatenate([[len(points)], points]) for points in ranges]
