@@ -229,9 +229,10 @@ def assemble(
         lambda: maps.pack_maps(scene, plan.layers, shape.arrays, key.masks, key.orientations, device),
     )
     scratch_set.variations = material.pack_variations(plan.layers if key.variation else (), device)
+    waved = tuple(tuple(x.layer.label for x in w.layers) if w is not None else () for w in plan.waves)
     sparkle = parts.part(
         "glints",
-        (digest(scene.materials, key), scene.curves, scene.meshes, placed) if key.glints else (),
+        (digest(scene.materials, key, waved), scene.curves, scene.meshes, placed) if key.glints else (),
         lambda: glints.pack(scene, plan, key, shape, device),
     )
     scratch_set.glints = sparkle.arrays

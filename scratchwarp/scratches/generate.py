@@ -8,7 +8,7 @@ import numpy as np
 from ..scene import Curves, Layer
 
 # More than this many would not fit into memory together with their pieces.
-MOST = 20_000_000
+MOST = 5_000_000
 _POINTS_A_RADIAN = 8.0
 
 
