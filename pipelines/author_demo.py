@@ -12,6 +12,7 @@ from pathlib import Path
 
 from .demo_ball import ball
 from .demo_disc import disc
+from .demo_grooves import grooves_crossing, grooves_crossing_true, grooves_parallel, grooves_parallel_true
 from .demo_kettle import kettle
 from .demo_materials import gold, painted, plastic, wood
 from .demo_panel import panel
@@ -40,6 +41,10 @@ STAGES: dict[str, Callable[[Path, float], Path]] = {
     "wood": wood,
     "patterns": patterns,
     "zoom": zoom,
+    "grooves_parallel": grooves_parallel,
+    "grooves_parallel_true": grooves_parallel_true,
+    "grooves_crossing": grooves_crossing,
+    "grooves_crossing_true": grooves_crossing_true,
 }
 DEFAULT = ("ball", "kettle", "panel", "plain")
 
