@@ -12,6 +12,8 @@ from pathlib import Path
 
 from .demo_ball import ball
 from .demo_disc import disc
+from .demo_engraved import column, roof, vinyls
+from .demo_grooved_sphere import grooved_sphere
 from .demo_grooves import grooves_crossing, grooves_crossing_true, grooves_parallel, grooves_parallel_true
 from .demo_kettle import kettle
 from .demo_materials import gold, painted, plastic, wood
@@ -45,6 +47,10 @@ STAGES: dict[str, Callable[[Path, float], Path]] = {
     "grooves_parallel_true": grooves_parallel_true,
     "grooves_crossing": grooves_crossing,
     "grooves_crossing_true": grooves_crossing_true,
+    "grooved_sphere": grooved_sphere,
+    "vinyls": vinyls,
+    "roof": roof,
+    "column": column,
 }
 DEFAULT = ("ball", "kettle", "panel", "plain")
 

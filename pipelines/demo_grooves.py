@@ -13,6 +13,7 @@ from pxr import Sdf, Usd, UsdShade
 from . import demo_relief as relief
 from . import demo_shapes as shapes
 from . import demo_usd as usd
+from .demo_ball import metal
 
 SIDE = 80.0  # of the plates
 UNIT = 1e4  # micrometres in a centimetre
@@ -26,7 +27,7 @@ SCRATCH = [(0.0, 0.0), (0.35, -1.0), (0.5, -1.0), (1.0, 0.0)]
 SCRATCHES = 48
 NARROW, WIDE = 700.0, 4200.0
 ASPECT = 0.3  # depth over width
-VIEW = 15.0  # half the part of the plate that has scratches
+VIEW = 11.0  # half the part of the plate that has scratches
 
 
 def grooves_parallel(path: Path | str, detail: float = 1.0) -> Path:
@@ -105,9 +106,9 @@ def _scratches(stage: Usd.Stage, detail: float) -> Sdf.Path:
 
 def _parallel() -> tuple[Usd.Stage, UsdShade.Material]:
     stage = usd.new_stage()
-    bronze = usd.material(stage, "bronze", diffuseColor=(0.42, 0.2, 0.09), roughness=0.45, ior=1.6)
-    usd.distant_light(stage, "sun", (0.45, -0.62, 0.7), 0.5, 2.6, (1.0, 0.95, 0.86))
-    usd.dome_light(stage, "sky", 0.25, (0.75, 0.86, 1.0))
+    bronze = metal(stage, "bronze", "copper", 0.3)
+    usd.distant_light(stage, "sun", (-0.35, -0.75, 0.55), 0.5, 3.0, (1.0, 0.95, 0.86))
+    usd.dome_light(stage, "sky", 0.35, (0.75, 0.86, 1.0))
     usd.camera(stage, (-16.0, 10.0, 25.5), (-2.4, 0.0, 3.8))
     usd.settings(stage)
     return stage, bronze
@@ -115,8 +116,8 @@ def _parallel() -> tuple[Usd.Stage, UsdShade.Material]:
 
 def _crossing() -> tuple[Usd.Stage, UsdShade.Material]:
     stage = usd.new_stage()
-    steel = usd.material(stage, "steel", diffuseColor=(0.23, 0.26, 0.3), roughness=0.4, ior=1.8)
-    usd.distant_light(stage, "sun", (0.65, -0.6, 0.45), 0.5, 2.8, (1.0, 0.95, 0.88))
+    steel = usd.material(stage, "steel", diffuseColor=(0.36, 0.4, 0.45), roughness=0.4, ior=1.8)
+    usd.distant_light(stage, "sun", (0.65, -0.6, 0.45), 0.5, 4.2, (1.0, 0.95, 0.88))
     usd.dome_light(stage, "sky", 0.3, (0.75, 0.86, 1.0))
     usd.camera(stage, (0.0, 26.0, 24.0), (0.0, 0.0, 0.8))
     usd.settings(stage)
