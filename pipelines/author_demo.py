@@ -2,7 +2,8 @@
 
 They are the stages of the README's picture, of the tests and of the benchmarks. To be asked for with --only: fine
 scratches that diffract on spoon, spoon_star, spoon_window, spoon_dome, disc and vinyl; the materials gold, painted,
-plastic and wood; patterns, shallow and steep; zoom, four decades of distance.
+plastic and wood; patterns, shallow and steep; zoom, four decades of distance; grooves one by one on
+grooves_parallel and grooves_crossing, both with a twin _true of real triangles, grooved_sphere, vinyls, roof, column.
 """
 
 import argparse

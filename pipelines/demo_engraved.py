@@ -17,7 +17,7 @@ RECORD = (0.36, 4.6, 5.3, 14.4, 15.0)  # radii of the hole, the label, the groov
 TRACK = 900.0  # from groove to groove
 
 EAVES, SLOPE, PITCH = 300.0, 160.0, np.radians(33.0)  # a side of the roof: along the eaves, up the slope; its angle
-COURSE, TILE, RISE, JOINT = 20.0, 16.0, 26_000.0, 7_000.0  # rows and columns of tiles; height of an edge, a joint's width
+COURSE, TILE, RISE, JOINT = 20.0, 16.0, 26_000.0, 7_000.0  # rows, columns; an edge's height, a joint's width
 
 COLUMN, TALL = 12.0, 66.0
 AROUND = 2.0 * np.pi * COLUMN
@@ -124,8 +124,8 @@ def _joints(stage: Usd.Stage, rows: int) -> Sdf.Path:
 
 
 def column(path: Path | str, detail: float = 1.0) -> Path:
-    """A stone column with flutes, rings that stand out, and a band of writing; ``detail`` scales the number of faces and
-    of signs."""
+    """A stone column with flutes, rings that stand out, and a band of writing; ``detail`` scales the number of faces
+    and of signs."""
     stage = usd.new_stage()
     around = max(16, int(128 * detail))
     stone = usd.material(stage, "stone", diffuseColor=(0.56, 0.47, 0.35), roughness=0.9)
@@ -175,7 +175,8 @@ SIGNS: list[list[list[tuple[float, float]]]] = [
      [(0.5, 0.44), (0.5, 0.56)]],
     [[(0.05, 0.5), (0.3, 0.72), (0.65, 0.72), (0.95, 0.5), (0.6, 0.36), (0.3, 0.36), (0.05, 0.5)],
      [(0.35, 0.3), (0.3, 0.02)], [(0.6, 0.3), (0.85, 0.05)], [(0.1, 0.85), (0.5, 1.0), (0.95, 0.82)]],
-    [[(0.1, 0.0), (0.1, 0.33), (0.4, 0.33), (0.4, 0.66), (0.7, 0.66), (0.7, 1.0), (0.92, 1.0), (0.92, 0.0), (0.1, 0.0)]],
+    [[(0.1, 0.0), (0.1, 0.33), (0.4, 0.33), (0.4, 0.66), (0.7, 0.66), (0.7, 1.0), (0.92, 1.0), (0.92, 0.0),
+      (0.1, 0.0)]],
 ]  # fmt: skip
 
 
