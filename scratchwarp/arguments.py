@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .scene import Settings
+    from .scene.knob import Value
 
 
 _PURPOSES = ("default", "render", "proxy", "guide")
@@ -50,6 +51,9 @@ def add_settings(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--effect", action="append", default=[], metavar="NAME=on|off", help="force an effect that explain lists"
     )
+    group.add_argument(
+        "--knob", action="append", default=[], metavar="NAME=VALUE", help="turn an approximation; docs/accuracy.md"
+    )
 
 
 def add_color(parser: argparse.ArgumentParser) -> None:
@@ -84,6 +88,7 @@ def settings(args: argparse.Namespace) -> "Settings":
             threads=args.threads,
             effects=dict(_effect(text) for text in args.effect),
             model=args.model,
+            knobs=dict(_knob(text) for text in args.knob),
         )
     except ValueError as error:
         raise UsageError(str(error)) from error
@@ -180,6 +185,18 @@ def _effect(text: str) -> tuple[str, bool]:
     if name not in EFFECTS:
         raise UsageError(f"--effect {name!r} is not one of {', '.join(EFFECTS)}")
     return name, switch == "on"
+
+
+def _knob(text: str) -> tuple[str, "Value"]:
+    from .plan.knobs import checked
+
+    name, _, value = text.partition("=")
+    if not name or not value:
+        raise UsageError(f"--knob {text!r} is not NAME=VALUE")
+    try:
+        return name, checked({name: value})[name]
+    except ValueError as error:
+        raise UsageError(f"--knob: {error}") from None
 
 
 _EXAMPLES = {

@@ -4,6 +4,7 @@ Files:
     choice      EffectChoice, EffectPlan, TablePlan, LayerPlan: the result
     resolve     every setting decided
     effects     the effects and how each is decided; a new effect is one line there
+    knobs       the approximations that can be turned, and how they change tables and settings
     cost        about what each effect costs
     layers      the scene's layers -> sublayers and the tables they share
     theta       which theta model a table needs

@@ -32,6 +32,7 @@ class TablePlan:
             error of an albedo.
         users: the layers that share it.
         source: traced, or facets for a table of the profile's facets and their masking alone.
+        resolution, rays, sampler, incidence: of ``profiles.simulate``.
         parts: what to simulate and average instead of ``profile``, ((profile, share), ...), for scratches that differ.
     """
 
@@ -46,6 +47,8 @@ class TablePlan:
     error: float = 0.0
     source: str = "traced"
     parts: tuple[tuple[Any, float], ...] = ()
+    sampler: str = "beam"
+    incidence: str = "cell"
 
 
 @dataclass(frozen=True, eq=False)

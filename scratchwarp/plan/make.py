@@ -11,6 +11,7 @@ from .choice import EffectChoice, EffectPlan, LayerPlan, ResponsePlan, TablePlan
 from .cost import shares
 from .effects import EFFECTS, Facts, sampled_lights
 from .grooves import laid_out, plan_grooves
+from .knobs import turned_tables
 from .layers import plan_layers, reflector
 from .models import base_responses
 from .resolve import resolve
@@ -47,11 +48,14 @@ def make_plan(scene: Scene, settings: Settings | None = None, earlier: EffectPla
     # closed forms along cones need tables whose sums follow from those of their slices
     summed = forced.get("lights.closedForm", any(MODELS[type(light)].arcs is not None for light in scene.lights))
     try:
-        known = earlier.tables if earlier is not None and earlier.settings.max_error == decided.max_error else ()
+        before = earlier.settings if earlier is not None else None
+        alike = before is not None and (before.max_error, before.knobs) == (decided.max_error, decided.knobs)
+        known = earlier.tables if earlier is not None and alike else ()
         layers, tables, responses, warnings = plan_layers(
             scene, allowed, decided.max_error, known, decided.model, elsewhere, summed
         )
-        waves = plan_waves(scene, waved, reflector, decided.model)
+        tables = turned_tables(tables, decided.knobs, summed)
+        waves = plan_waves(scene, waved, reflector, decided.model, decided.knobs)
         warnings += complaints(waves)
         grooves = plan_grooves(scene, grooved, decided.model)
         used = sorted({m for instance in scene.instances for m in instance.materials})
@@ -105,6 +109,8 @@ def make_plan(scene: Scene, settings: Settings | None = None, earlier: EffectPla
     }
     if far:
         numbers["stencils"] = far
+    if decided.knobs:
+        numbers["knobs"] = ", ".join(f"{name}={value}" for name, value in decided.knobs.items())
     if decided.model is not None:
         numbers["model"] = f"{decided.model}, in place of every layer's own"
     return EffectPlan(

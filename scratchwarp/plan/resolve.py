@@ -3,17 +3,18 @@
 import math
 import os
 from dataclasses import replace
+from typing import Any
 
 from ..scene import Scene, Settings
+from .knobs import KNOBS, by_quality, checked, switched, turned
 
-DEFAULT_WIDTH, DEFAULT_SPP, DEFAULT_DEPTH, DEFAULT_TAPS = 640, 16, 8, 16
+DEFAULT_WIDTH = 640
 # Full support in pixels at which each filter is sharp without aliasing.
 FILTER_WIDTHS = {"box": 1.0, "gaussian": 3.0, "blackmanHarris": 3.3}
-QUALITY_SPP = {"draft": 4, "preview": 16, "final": 128, "reference": 1024}
 
 
 def resolve(scene: Scene, settings: Settings) -> tuple[Settings, tuple[int, int], tuple[int, int, int, int]]:
-    """(settings without None but max_error and quality, (width, height), rendered window x0, x1, y0, y1)."""
+    """(settings without None but max_error, model and quality, (width, height), rendered window x0, x1, y0, y1)."""
     o, camera = scene.options, scene.camera
     width, height = settings.width, settings.height
     aspect = camera.horizontal_aperture / camera.vertical_aperture
@@ -41,8 +42,11 @@ def resolve(scene: Scene, settings: Settings) -> tuple[Settings, tuple[int, int]
     x1, y1 = min(max(x1, x0 + 1), width), min(max(y1, y0 + 1), height)
 
     quality = settings.quality or o.quality
-    by_quality = QUALITY_SPP[quality] if quality else None
-    spp = settings.spp or (QUALITY_SPP[settings.quality] if settings.quality else None) or o.spp or by_quality
+    knobs = checked(settings.knobs)
+    asked, chosen_by = turned(knobs, "settings"), by_quality(quality)
+    falls_to: dict[str, Any] = {k.place[1]: chosen_by.get(n, k.default) for n, k in KNOBS.items() if k.place[0] == "settings"}
+    own_quality = by_quality(settings.quality).get("spp")
+    spp = asked.get("spp") or settings.spp or own_quality or o.spp or falls_to["spp"]
     chosen = settings.filter or o.filter
     filter_width = settings.filter_width
     if filter_width is None:
@@ -53,16 +57,18 @@ def resolve(scene: Scene, settings: Settings) -> tuple[Settings, tuple[int, int]
         settings,
         width=width,
         height=height,
-        spp=spp or DEFAULT_SPP,
+        spp=spp,
         seed=settings.seed if settings.seed is not None else (o.seed or 0),
         threads=settings.threads or os.cpu_count() or 1,
         quality=quality,
         max_error=settings.max_error or o.max_error,
         integrator=settings.integrator or o.integrator or "direct",
-        max_depth=settings.max_depth or o.max_depth or DEFAULT_DEPTH,
+        max_depth=asked.get("max_depth") or settings.max_depth or o.max_depth or falls_to["max_depth"],
         filter=chosen,
         filter_width=filter_width,
-        cone_taps=settings.cone_taps or DEFAULT_TAPS,
-        effects={**dict(o.effects), **settings.effects},
+        cone_taps=asked.get("cone_taps") or settings.cone_taps or falls_to["cone_taps"],
+        model=asked.get("model") or settings.model,
+        effects={**dict(o.effects), **switched(knobs), **settings.effects},
+        knobs={**chosen_by, **knobs},
     )
     return decided, (width, height), (x0, x1, y0, y1)

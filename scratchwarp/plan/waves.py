@@ -1,7 +1,8 @@
 """Which layers diffract, and what they reflect by at each wavelength."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,8 @@ from .. import optics
 from ..optics import metals
 from ..reflectance.diffraction.outline import facets
 from ..scene import Layer, Material, Scene, ScratchSurface, Wave
+from ..scene.knob import Value
+from .knobs import turned_wave
 from .profiles import cross_section
 
 # Patterns of regular pitch have a closed form; all others become explicit scratches.
@@ -84,11 +87,12 @@ def plan_waves(
     wanted: Callable[[Material, Layer], bool],
     reflector: Callable[..., tuple[Any, bool]],
     model: str | None = None,
+    knobs: Mapping[str, Value] = MappingProxyType({}),
 ) -> tuple[WavePlan | None, ...]:
     """For each material what of it diffracts, None where nothing does.
 
     ``wanted(material, layer)``: whether it may; ``reflector``: as ``plan.layers.reflector``; ``model``: in place of
-    every layer's own. Lambert scratches do not diffract.
+    every layer's own; ``knobs``: as ``Settings.knobs``. Lambert scratches do not diffract.
     """
     used = {m for i in scene.instances for m in i.materials}
     made: list[WavePlan | None] = []
@@ -100,7 +104,8 @@ def plan_waves(
                 fresnel = reflector(scene, material, layer)[0]
                 if fresnel is not None:
                     own.append(WaveLayerPlan(layer, fresnel, wave_index(material, layer), outline(layer)))
-        made.append(WavePlan(material.wave, tuple(own)) if own and material.wave is not None else None)
+        wave = material.wave
+        made.append(WavePlan(turned_wave(wave, knobs), tuple(own)) if own and wave is not None else None)
     return tuple(made)
 
 

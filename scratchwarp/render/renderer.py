@@ -36,6 +36,8 @@ def _simulated(table: TablePlan, profile: profiles.Profile, threads: int) -> pro
         fresnel=table.fresnel,
         max_bounces=table.max_bounces,
         theta_model=table.theta_model,
+        sampler=table.sampler,
+        incidence=table.incidence,
         threads=threads,
     )
 
@@ -48,7 +50,8 @@ def simulate_table(
     if not table.parts:
         return _simulated(table, table.profile, threads)
     known = {} if known is None else known
-    asked = (table.source, table.fresnel, table.theta_model, table.max_bounces, table.resolution, table.rays)
+    how = (table.max_bounces, table.resolution, table.rays, table.sampler, table.incidence)
+    asked = (table.source, table.fresnel, table.theta_model, *how)
     made: dict[tuple[Any, ...], profiles.Table] = {}
     for profile, _ in table.parts:
         key = (profile.token, asked)
@@ -196,6 +199,7 @@ def render_digest(scene: Scene, plan: EffectPlan, built: Assembled) -> str:
         settings.filter_width,
         settings.max_depth,
         settings.cone_taps,
+        settings.knobs,
     )
 
 

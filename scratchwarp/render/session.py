@@ -156,7 +156,8 @@ class Session:
         simulated, tables = [], []
         for t in plan.tables:
             mixed = tuple((profile.token, share) for profile, share in t.parts)
-            key = (t.key, t.fresnel is None, t.resolution, t.rays, t.max_bounces, t.theta_model, t.source, mixed)
+            traced = (t.resolution, t.rays, t.sampler, t.incidence, t.max_bounces, t.theta_model, t.source)
+            key = (t.key, t.fresnel is None, *traced, mixed)
             if key not in self._tables:
                 self._tables[key] = simulate_table(t, plan.settings.threads or 1)
                 simulated.append(t)

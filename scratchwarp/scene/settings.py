@@ -6,9 +6,9 @@ from types import MappingProxyType
 from typing import Any
 
 from .checks import in_range, one_of, put
+from .knob import QUALITIES
 from .layer import MODELS
 
-QUALITIES = ("draft", "preview", "final", "reference")
 MOST_CONE_TAPS = 64
 INTEGRATORS = ("direct", "path")
 
@@ -22,7 +22,8 @@ class Settings:
             the stage's resolution or the camera's aperture.
         spp: samples a pixel [16]; seed: of every random choice [0].
         threads: worker threads [all cores]; the image does not depend on it.
-        quality: draft, preview, final or reference, which is 4, 16, 128 or 1024 samples where spp is not given.
+        quality: draft, preview, final or reference, which turns all knobs that are not turned otherwise: 4, 16, 128 or
+            1024 samples and tables, look-ups and depths of paths to go with them.
         max_error: largest error of the albedo of scratches by their tables' theta model [0.01].
         integrator: direct or path; max_depth: surfaces that a path may meet.
         crop: (xmin, xmax, ymin, ymax) in [0, 1], from the top left; only that part is rendered.
@@ -30,6 +31,8 @@ class Settings:
         filter: box, gaussian or blackmanHarris [blackmanHarris]; filter_width: full width in pixels.
         cone_taps: look-ups into an image or a shaped light along the mirror cone of a scratch, for each sample [16].
         effects: name -> True or False forces one effect of the plan on or off.
+        knobs: name -> value of approximations (``plan.knobs.KNOBS`` has them all); they go before the fields of the
+            same meaning, and effects before them.
         model: how light on scratches is computed, a token of ``scratch:layer:model`` in place of every layer's own.
     """
 
@@ -49,6 +52,7 @@ class Settings:
     effects: Mapping[str, bool] = field(default_factory=dict)
     model: str | None = None
     cone_taps: int | None = None
+    knobs: Mapping[str, int | str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         limits = {"width": 65536, "height": 65536, "spp": 1 << 20, "threads": 4096, "max_depth": 1024, "tile": 4096}
@@ -80,7 +84,9 @@ class Settings:
         for name, value in self.effects.items():
             if not isinstance(value, bool):
                 raise ValueError(f"Settings: effects[{name!r}] is {value!r}, expected True or False")
-        put(self, effects=MappingProxyType(dict(self.effects)))
+        if not isinstance(self.knobs, Mapping):
+            raise ValueError(f"Settings: knobs is {self.knobs!r}, expected a mapping of names to values")
+        put(self, effects=MappingProxyType(dict(self.effects)), knobs=MappingProxyType(dict(self.knobs)))
 
 
 def _check_crop(crop: Any) -> None:

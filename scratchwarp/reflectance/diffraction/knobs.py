@@ -1,0 +1,40 @@
+"""What can be turned in wave optics."""
+
+from scratchwarp.scene.knob import Knob
+
+_VELINOV = "Velinov, Werner, Hullin 2018"
+
+KNOBS = (
+    Knob(
+        name="diffraction.lights",
+        values=("paper", "slice", "slices"),
+        default="slices",
+        error="wide lights that lose or gain light across the scratch",
+        effects=("diffraction.areaLights",),
+        switches={
+            "paper": {"diffraction.paperLights": True},
+            "slice": {"diffraction.closedForm": True},
+            "slices": {},
+        },
+        source=f"{_VELINOV}, Equations 27 and 29",
+    ),
+    Knob(
+        name="diffraction.colors",
+        values=("auto", "rgb", "lookup", "wavelengths"),
+        default="auto",
+        error="colours of too few wavelengths",
+        sets="wave.sampling",
+        effects=("diffraction",),
+        source=f"{_VELINOV}, section 5",
+    ),
+    Knob(
+        name="diffraction.wavelengths",
+        values=("auto", 4, 8, 16, 32, 64),
+        default="auto",
+        error="colours of too few wavelengths",
+        sets="wave.samples",
+        effects=("diffraction",),
+        limits=(1, 1024),
+        source=f"{_VELINOV}, section 5",
+    ),
+)
