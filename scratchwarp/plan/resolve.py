@@ -44,9 +44,10 @@ def resolve(scene: Scene, settings: Settings) -> tuple[Settings, tuple[int, int]
     quality = settings.quality or o.quality
     knobs = checked(settings.knobs)
     asked, chosen_by = turned(knobs, "settings"), by_quality(quality)
-    falls_to: dict[str, Any] = {k.place[1]: chosen_by.get(n, k.default) for n, k in KNOBS.items() if k.place[0] == "settings"}
+    own = {n: k for n, k in KNOBS.items() if k.place[0] == "settings"}
+    falls_to: dict[str, Any] = {k.place[1]: chosen_by.get(n, k.default) for n, k in own.items()}
     own_quality = by_quality(settings.quality).get("spp")
-    spp = asked.get("spp") or settings.spp or own_quality or o.spp or falls_to["spp"]
+    spp: Any = asked.get("spp") or settings.spp or own_quality or o.spp or falls_to["spp"]
     chosen = settings.filter or o.filter
     filter_width = settings.filter_width
     if filter_width is None:
