@@ -19,6 +19,11 @@ wp.set_module_options({"enable_backward": False})
 FAR_BEGIN = wp.constant(12.0)
 FAR_END = wp.constant(24.0)
 
+# One hash a cell: odd multipliers part its neighbours, its halves are the point's coordinates.
+ALONG = wp.constant(wp.uint32(0x9E3779B1))
+ACROSS = wp.constant(wp.uint32(0x85EBCA77))
+SIXTEENTH_BIT = wp.constant(1.0 / 65536.0)
+
 
 @wp.func
 def count_bits(mask: wp.uint64) -> int:
@@ -42,6 +47,49 @@ def interval_bits(t0: float, t1: float, phase: float) -> wp.uint64:
             bits = (wp.uint64(1) << wp.uint64(n)) - wp.uint64(1)
         bits = bits << wp.uint64(k0)
     return bits
+
+
+@wp.func
+def whole(x: wp.float64) -> wp.int64:
+    """The whole number at or below ``x``, by a conversion (processors of the oldest kind call a library for floor)."""
+    k = wp.int64(x)
+    if wp.float64(k) > x:
+        k -= wp.int64(1)
+    return k
+
+
+@wp.func
+def point_in(cx: int, cy: int, seed: wp.uint32) -> wp.vec2:
+    """The jittered point of a cell, each coordinate in [0, 1)."""
+    h = pcg_hash(wp.uint32(cx) * ALONG + wp.uint32(cy) * ACROSS + seed)
+    return wp.vec2(float(h >> wp.uint32(16)) * SIXTEENTH_BIT, float(h & wp.uint32(0xFFFF)) * SIXTEENTH_BIT)
+
+
+@wp.func
+def misses(p: wp.vec2, a: wp.vec2, ix: int, iy: int, reach: float, seed: wp.uint32) -> bool:
+    """Whether a segment that touches two by two cells at most passes all their disks; else False.
+
+    Most layers of a sparse pattern are decided here, without a branch that depends on the disks.
+    """
+    half_x = 0.5 * wp.abs(a[0]) + reach
+    half_y = 0.5 * wp.abs(a[1]) + reach
+    passes = bool(False)
+    if half_x <= 0.5 and half_y <= 0.5:
+        # p lies in [0, 1)
+        x0 = wp.where(p[0] < half_x, -1.0, 0.0)
+        y0 = wp.where(p[1] < half_y, -1.0, 0.0)
+        scale = 1.0 / wp.max(wp.dot(a, a), 1.0e-20)
+        nearest = float(1.0e30)
+        for k in range(4):
+            x = x0 + float(k & 1)
+            y = y0 + float(k >> 1)
+            jitter = point_in(ix + int(x), iy + int(y), seed)
+            to = wp.vec2(x + jitter[0] - p[0], y + jitter[1] - p[1])
+            t = wp.clamp(wp.dot(to, a) * scale, -0.5, 0.5)
+            off = to - t * a
+            nearest = wp.min(nearest, wp.dot(off, off))
+        passes = nearest > 1.0001 * reach * reach
+    return passes
 
 
 @wp.struct
@@ -109,13 +157,10 @@ def make_chord(varied: bool):
                 if swap:
                     cx = ix + row
                     cy = iy + column
-                h1 = pcg_hash(wp.uint32(cx) ^ pcg_hash(wp.uint32(cy) ^ seed))
-                h2 = pcg_hash(h1 ^ wp.uint32(0x3C6EF372))
-                fx = float(column) + unit_float(h1)
-                fy = float(row) + unit_float(h2)
-                if swap:
-                    fx = float(column) + unit_float(h2)
-                    fy = float(row) + unit_float(h1)
+                jitter = point_in(cx, cy, seed)
+                h2 = pcg_hash(wp.uint32(cx) * ALONG + wp.uint32(cy) * ACROSS + seed)
+                fx = float(column) + wp.where(swap, jitter[1], jitter[0])
+                fy = float(row) + wp.where(swap, jitter[0], jitter[1])
                 to = wp.vec2(start[0] - fx, start[1] - fy)
                 b = wp.dot(to, d)
                 r = radius
@@ -178,8 +223,8 @@ def make_worley(varied: bool):
             fy = fx / 3.0
         px = x * layer.inv_length + layer.offset[0]
         py = y * layer.inv_width + layer.offset[1]
-        ix = wp.floor(px)
-        iy = wp.floor(py)
+        ix = whole(px)
+        iy = whole(py)
 
         il = float(layer.inv_length)
         iw = float(layer.inv_width)
@@ -191,22 +236,26 @@ def make_worley(varied: bool):
             wp.vec2(ax_x * il, (ax_y * (1.0 - fy) - ax_x * fx) * iw),
             wp.vec2(ay_x * il, (ay_y * (1.0 - fy) - ay_x * fx) * iw),
         )
-        length = wp.length(a)
-        far = wp.clamp((length - FAR_BEGIN) / (FAR_END - FAR_BEGIN), 0.0, 1.0)
+        far = float(0.0)
+        length2 = wp.dot(a, a)
+        if length2 > FAR_BEGIN * FAR_BEGIN:
+            far = wp.min((wp.sqrt(length2) - FAR_BEGIN) / (FAR_END - FAR_BEGIN), 1.0)
         alpha = layer.mean
         near = Chord()
         if far < 1.0:
-            near = chord(
-                wp.vec2(float(px - ix), float(py - iy)),
-                a,
-                int(ix),
-                int(iy),
-                layer.radius,
-                layer.width_variation,
-                layer.seed,
-                phase,
-                layer.wave / il,
-            )
+            at = wp.vec2(float(px - wp.float64(ix)), float(py - wp.float64(iy)))
+            if not misses(at, a, int(ix), int(iy), layer.radius * (1.0 + layer.width_variation), layer.seed):
+                near = chord(
+                    at,
+                    a,
+                    int(ix),
+                    int(iy),
+                    layer.radius,
+                    layer.width_variation,
+                    layer.seed,
+                    phase,
+                    layer.wave / il,
+                )
             alpha = far * layer.mean + (1.0 - far) * near.fraction
 
         hit = LayerHit()
@@ -221,10 +270,12 @@ def make_worley(varied: bool):
                 hit.scratch = pcg_hash(bits)
                 hit.along = 0.0
                 hit.stretch = drawn_stretch(unit_float(pcg_hash(hit.scratch)), layer.width_variation, 2.0)
-        tangent = wp.normalize(wp.vec2(1.0 - fy, fx))
-        hit.direction = wp.vec2(
-            layer.cos_a * tangent[0] - layer.sin_a * tangent[1], layer.sin_a * tangent[0] + layer.cos_a * tangent[1]
-        )
+        if alpha > 0.0:
+            tangent = wp.normalize(wp.vec2(1.0 - fy, fx))
+            hit.direction = wp.vec2(
+                layer.cos_a * tangent[0] - layer.sin_a * tangent[1],
+                layer.sin_a * tangent[0] + layer.cos_a * tangent[1],
+            )
         return hit
 
     return worley
