@@ -1,6 +1,7 @@
 """The pipelines that are sub-commands of scratchwarp."""
 
-from . import author
+from . import author, compare, contact_sheet, turntable, zoom
 from .command import Command
 
-COMMANDS: dict[str, Command] = {module.COMMAND.name: module.COMMAND for module in (author,)}
+PIPELINES = (author, compare, contact_sheet, turntable, zoom)
+COMMANDS: dict[str, Command] = {module.COMMAND.name: module.COMMAND for module in PIPELINES}

@@ -1,0 +1,114 @@
+"""Pictures from a camera that moves about what the middle of the picture shows."""
+
+import argparse
+import itertools
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from . import pictures
+from .command import Report, WrongUsage
+
+Array = Any  # of NumPy, which loads when a pipeline runs
+
+
+def add_arguments(parser: argparse.ArgumentParser, frames: int) -> None:
+    """What every move understands."""
+    parser.add_argument("stage", metavar="STAGE", help="USD file")
+    parser.add_argument("out", metavar="OUT", help="image.####.png, .exr or .npz; ### stands for the frame number")
+    parser.add_argument("--frames", type=int, default=frames, help=f"how many [{frames}]")
+    parser.add_argument(
+        "--target", type=float, nargs=3, metavar=("X", "Y", "Z"),
+        help="what to move about, in metres [what the middle of the picture shows]",
+    )  # fmt: skip
+    parser.add_argument("--sheet", metavar="FILE", help="all frames in one picture, too")
+    pictures.add_rendering(parser)
+
+
+def turned(matrix: Array, about: Array, axis: Array, angle: float) -> Array:
+    """A camera's matrix [4, 4] turned by ``angle`` radians, counter-clockwise about the line through ``about`` along
+    ``axis`` (Rodrigues' formula)."""
+    import numpy as np
+
+    x, y, z = axis / np.linalg.norm(axis)
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    turn = np.eye(4)
+    turn[:3, :3] += np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+    turn[:3, 3] = about - turn[:3, :3] @ about
+    return turn @ matrix
+
+
+def moved(matrix: Array, about: Array, factor: float) -> Array:
+    """A camera's matrix [4, 4] with its distance from ``about`` multiplied by ``factor``."""
+    import numpy as np
+
+    made = np.array(matrix, np.float64)
+    made[:3, 3] = about + factor * (made[:3, 3] - about)
+    return made
+
+
+def orbit(scene: Any, about: Array, count: int) -> Iterator[Any]:
+    """The scene from ``count`` cameras on one whole turn about the up axis."""
+    import numpy as np
+
+    for i in range(count):
+        matrix = turned(scene.camera.transform, about, scene.up, 2 * np.pi * i / count)
+        yield replace(scene, camera=replace(scene.camera, transform=matrix))
+
+
+def approach(scene: Any, about: Array, count: int, last: float) -> Iterator[Any]:
+    """The scene from ``count`` cameras whose distances fall evenly in their logarithm, to ``last`` of the first."""
+    camera = scene.camera
+    for i in range(count):
+        factor = last ** (i / max(count - 1, 1))
+        lens = {"near": camera.near * factor, "focus_distance": camera.focus_distance * factor}
+        yield replace(scene, camera=replace(camera, transform=moved(camera.transform, about, factor), **lens))
+
+
+def middle(scene: Any) -> Array:
+    """What the middle of the picture shows, in metres relative to the scene's origin; ValueError where that is
+    nothing."""
+    import numpy as np
+
+    import scratchwarp as sw
+
+    camera = scene.camera
+    narrow = replace(
+        camera, horizontal_aperture=1e-3 * camera.horizontal_aperture, vertical_aperture=1e-3 * camera.vertical_aperture
+    )
+    seen = replace(scene, camera=narrow)
+    film = sw.render(seen, sw.make_plan(seen, sw.Settings(width=1, height=1, spp=1)))
+    if film["primId"][0, 0] < 0:
+        raise ValueError(f"{scene.path}: the middle of the picture shows nothing; say what to move about by --target")
+    return np.asarray(film["P"][0, 0], np.float64) - scene.origin
+
+
+def run(options: argparse.Namespace, moves: Callable[[Any, Array, int], Iterator[Any]]) -> Report:
+    """Render and write every frame of a move; raises ValueError and OSError where the input is at fault."""
+    import numpy as np
+
+    import scratchwarp as sw
+    from scratchwarp import image
+    from scratchwarp.frames import is_numbered, numbered
+
+    if not 1 <= options.frames <= 10000:
+        raise WrongUsage(f"--frames {options.frames} is not in [1, 10000]")
+    if options.frames > 1 and not is_numbered(options.out):
+        raise WrongUsage(f"OUT {options.out!r} is one file for {options.frames} frames; write ### in it")
+    names = [numbered(options.out, float(i + 1)) for i in range(options.frames)]
+    for name in itertools.chain(names, [options.sheet] if options.sheet else []):
+        image.check_writable(name)
+        pictures.check_out(name, [options.stage])
+    scene = sw.read(options.stage, camera=options.camera)
+    about = middle(scene) if options.target is None else np.asarray(options.target, np.float64) - scene.origin
+    shots = []
+    for name, shot in zip(names, moves(scene, about, options.frames), strict=True):
+        film = pictures.film(shot, options, Path(name).name)
+        image.write(film, name)
+        if options.sheet:
+            shots.append(np.asarray(film["color"]))
+    if options.sheet:
+        image.write_layers({"color": pictures.grid(shots)}, options.sheet)
+        names.append(options.sheet)
+    return Report({"stage": options.stage, "target": (about + scene.origin).tolist(), "images": names}, tuple(names))
