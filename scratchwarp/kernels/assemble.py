@@ -111,7 +111,7 @@ def _glint_fields(plan: EffectPlan) -> dict[str, Any]:
         "glint_hierarchy": segments and plan.on("diffraction.hierarchy"),
         "glint_bands": plan.on("diffraction.bands"),
         "glint_gratings": plan.on("diffraction.bands") and plan.on("diffraction.coherent"),
-        "glint_lookup": plan.on("diffraction.lookup"),
+        "glint_lookup": plan.on("diffraction.lookup") and not plan.on("diffraction.paperLights"),
         "glint_numeric": plan.on("diffraction.outlines") or plan.on("diffraction.angles"),
         "glint_areas": plan.on("diffraction.areaLights"),
         "glint_method": "paper" if plan.on("diffraction.paperLights") else method,
