@@ -133,14 +133,23 @@ class Layer:
         one_of(who, "space", self.space, SPACES)
         one_of(who, "material", self.material, MATERIALS)
         one_of(who, "fresnelModel", self.fresnel, FRESNELS)
-        for name in ("width", "depth", "length", "density", "pitch", "variation_length"):
+        for name in ("width", "depth", "length", "density", "pitch"):
             in_range(who, name, getattr(self, name), 0.0, 1e12)
+        in_range(who, "variationLength", self.variation_length, 0.0, 1e12)
         in_range(who, "coverage", self.coverage, 0.0, 1.0)
         in_range(who, "widthVariation", self.width_variation, 0.0, 1.0)
         in_range(who, "depthVariation", self.depth_variation, 0.0, 1.0)
         in_range(who, "profileVariation", self.profile_variation, 0.0, 1.0)
-        for name in ("angle", "angle_spread", "curvature"):
-            in_range(who, name, getattr(self, name), -1e6, 1e6)
+        turns = {"angle": self.angle, "angleSpread": self.angle_spread, "curvature": self.curvature}
+        for name, turn in {**turns, "crossAngle": self.cross_angle}.items():
+            in_range(who, f"{name} in radians", turn, -1e6, 1e6)
+        for name, pair in {"offset": self.offset, "center": self.center}.items():
+            for value in pair:
+                in_range(who, name, value, -1e12, 1e12)
+        in_range(who, "patterns", self.patterns, 1, 64)
+        in_range(who, "seed", self.seed, 0, 2**32 - 1)
+        for value in self.diffuse_color:
+            in_range(who, "diffuseColor", value, 0.0, 1.0)
 
     @property
     def label(self) -> str:

@@ -113,7 +113,7 @@ def _layer(reading: Reading, prim: Usd.Prim, name: str, curves: CurveSets, textu
         reading.warn(where, "distribution is curves but its relationship curves has no target; it has no scratches")
     for fault in () if tokens["model"] == "normalMap" else degenerate(tokens["distribution"], fields):
         reading.warn(where, fault)
-    tint = prim.GetAttribute(f"{_PREFIX}{name}:diffuseColor")
+    tint = _albedo(reading, prim.GetAttribute(f"{_PREFIX}{name}:diffuseColor"), get("diffuseColor"), where)
     extra = tuple((attribute, get(attribute)) for attribute in _EXTRA)
     try:
         return Layer(
@@ -126,7 +126,7 @@ def _layer(reading: Reading, prim: Usd.Prim, name: str, curves: CurveSets, textu
             seed=int(get("seed")),
             eta=_triple(get("eta")),
             k=_triple(get("k")),
-            diffuse_color=_triple(color(reading, tint, np.array(get("diffuseColor"), np.float64))),
+            diffuse_color=_triple(tint),
             curves=curves.indices(where, targets, fields["width"], fields["depth"], tokens["space"]),
             patterns=int(get("patterns")),
             cross_angle=float(np.radians(get("crossAngle"))),
@@ -140,6 +140,15 @@ def _layer(reading: Reading, prim: Usd.Prim, name: str, curves: CurveSets, textu
         raise
     except ValueError as error:
         raise StageError(f"{reading.path}: {error}") from None
+
+
+def _albedo(reading: Reading, attribute: Usd.Attribute, authored: Any, where: str) -> np.ndarray:
+    """The colour of diffuse scratches, held in [0, 1], with a warning where that changes it. A NaN stays."""
+    tint = color(reading, attribute, np.array(authored, np.float64))
+    held = np.clip(tint, 0.0, 1.0)
+    if np.any(np.abs(tint - held) > 1e-6):
+        reading.warn(where, f"diffuseColor is {_triple(tint)}; an albedo lies in [0, 1], {_triple(held)} is used")
+    return held
 
 
 def _profile(reading: Reading, prim: Usd.Prim, name: str, where: str) -> Profile:

@@ -30,11 +30,14 @@ def read_normal_map(
         return None
     along, across = (float(np.clip(v, 1e-3, 1.0)) for v in get("facetRoughness"))
     u, v = (float(value) for value in get("normalRepeats"))
-    return NormalMap(
-        texture=index,
-        repeats=(u, v),
-        strength=float(get("normalStrength")),
-        deformation=str(get("normalDeformation")),
-        facets=str(get("facets")),
-        roughness=(along, across),
-    )
+    try:
+        return NormalMap(
+            texture=index,
+            repeats=(u, v),
+            strength=float(get("normalStrength")),
+            deformation=str(get("normalDeformation")),
+            facets=str(get("facets")),
+            roughness=(along, across),
+        )
+    except ValueError as error:
+        raise ValueError(f"{where}: {error}") from None

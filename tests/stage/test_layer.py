@@ -139,6 +139,13 @@ def test_a_layer_without_a_profile_is_a_v_groove(read, said, body, words):
         ("float scratch:layer:fine:width = -1", VEE, "/mat layer 'fine': width is -1"),
         ("float scratch:layer:fine:depth = nan", VEE, "/mat layer 'fine': depth is nan"),
         ("float scratch:layer:fine:coverage = 2", VEE, "/mat layer 'fine': coverage is 2"),
+        ("float2 scratch:layer:fine:offset = (nan, 0)", VEE, "/mat layer 'fine': offset is nan"),
+        ("float2 scratch:layer:fine:center = (0, inf)", VEE, "/mat layer 'fine': center is inf"),
+        ("float scratch:layer:fine:crossAngle = nan", VEE, "/mat layer 'fine': crossAngle in radians is nan"),
+        ("float scratch:layer:fine:angleSpread = inf", VEE, "/mat layer 'fine': angleSpread in radians is inf"),
+        ("uniform int scratch:layer:fine:patterns = 0", VEE, "/mat layer 'fine': patterns is 0"),
+        ("uniform int scratch:layer:fine:seed = -1", VEE, "/mat layer 'fine': seed is -1"),
+        ("color3f scratch:layer:fine:diffuseColor = (nan, 0, 0)", VEE, "/mat layer 'fine': diffuseColor is nan"),
         ('uniform token scratch:layer:fine:distribution = "spots"', VEE, "/mat layer 'fine': distribution is 'spots'"),
         ("", 'def ScratchProfile "Vee" { uniform token scratch:shape = "W" }', "/mat/Vee: scratch:shape is 'W'"),
         (
@@ -152,6 +159,12 @@ def test_a_layer_without_a_profile_is_a_v_groove(read, said, body, words):
 def test_impossible_values_name_the_prim_and_the_value(read, body, children, words):
     with pytest.raises(StageError, match=words):
         read(scratched(PROFILE + body, children=children))
+
+
+def test_scratches_never_reflect_more_than_all(read, said):
+    scene = read(scratched(PROFILE + "color3f scratch:layer:fine:diffuseColor = (2, 0.5, -1)\n", children=VEE))
+    assert layer(scene).diffuse_color == (1.0, 0.5, 0.0)
+    said(scene, "/mat layer 'fine'", "diffuseColor is (2.0, 0.5, -1.0)", "[0, 1]")
 
 
 @pytest.mark.parametrize("body", ["float scratch:layer:fine:width = 0", "float scratch:layer:fine:density = 1e9"])
