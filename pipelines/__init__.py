@@ -4,6 +4,7 @@ Files:
     author                    puts presets (folder presets) and attributes on an asset, in a layer over it: looks reads
                               them, put_on writes them
     compare, contact_sheet    show stages and images beside one another; pictures renders and arranges them
+    publish                   makes an asset folder: asset_folder lays it out, gather copies what it needs
     turntable, zoom           move the camera, by camera_moves
     command, commands         what makes a pipeline a sub-command of scratchwarp
     author_demo               writes the demo stages: demo_ball, demo_kettle, demo_panel, demo_plain, and those that

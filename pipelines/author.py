@@ -27,6 +27,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> Report:
     """What ``add_arguments`` were parsed into; ValueError and OSError where the input is at fault."""
+    from scratchwarp.stage.open import gathered_diagnostics
+    from scratchwarp.stage.reading import Warnings
+
     from . import looks
     from .put_on import put_on
 
@@ -41,7 +44,8 @@ def run(options: argparse.Namespace) -> Report:
         raise WrongUsage("--surface is of a preset; add --preset NAME")
     look = looks.read_preset(looks.preset_path(options.preset)) if options.preset else looks.plain_look(options.layer)
     look = looks.with_values(look, options.values)
-    made = put_on(options.asset, options.out, look, options.material, options.wear, options.surface)
+    with gathered_diagnostics(options.asset, Warnings()):  # what USD says of the asset, reading it says again
+        made = put_on(options.asset, options.out, look, options.material, options.wear, options.surface)
     rows = [{"path": path, "layers": layers} for path, layers in made.items()]
     wear = options.wear if look.wear else None
     record = {"out": options.out, "asset": options.asset, "preset": options.preset, "wear": wear, "materials": rows}

@@ -33,11 +33,16 @@ def overlay(edits: Sdf.Layer, root: Sdf.Layer, target: Path, between: Sequence[P
     layers ``between`` lie over the root."""
     out = Sdf.Layer.CreateAnonymous(".usda")
     out.TransferContent(edits)
-    for name in _METADATA:
-        if root.pseudoRoot.HasInfo(name):
-            out.pseudoRoot.SetInfo(name, root.pseudoRoot.GetInfo(name))
+    copy_metadata(root, out)
     out.subLayerPaths = [relative(Path(layer), target.parent) for layer in (*between, root.realPath)]
     return out
+
+
+def copy_metadata(root: Sdf.Layer, other: Sdf.Layer) -> None:
+    """Give ``other`` the metadata of a root layer that says how its stage is to be understood."""
+    for name in _METADATA:
+        if root.pseudoRoot.HasInfo(name):
+            other.pseudoRoot.SetInfo(name, root.pseudoRoot.GetInfo(name))
 
 
 def save_layer(layer: Sdf.Layer, target: Path) -> None:

@@ -1,0 +1,73 @@
+"""Publish a stage as an asset: an entry file with a payload, everything it needs beside it, a package and checksums."""
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from .command import Command, Report, WrongUsage
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """What ``scratchwarp publish`` understands."""
+    parser.add_argument("stage", metavar="STAGE", help="USD file with a default prim; it stays as it is")
+    parser.add_argument("out", metavar="OUT_DIR", help="folder of the asset; one that was published before is replaced")
+    parser.add_argument("--name", help="of the asset: letters, digits and _ [that of STAGE]")
+    parser.add_argument("--assetVersion", default="1", metavar="TEXT", help="of the asset [1]")
+    parser.add_argument("--thumbnail", metavar="FILE", help="PNG or JPEG [rendered]")
+    parser.add_argument("--no-thumbnail", action="store_true", help="none")
+    parser.add_argument("--no-usdz", action="store_true", help="no package")
+    parser.add_argument("--imageWidth", "-w", type=int, default=256, metavar="PIXELS", help="of the thumbnail [256]")
+    parser.add_argument("--spp", type=int, default=16, help="samples a pixel of the thumbnail [16]")
+
+
+def run(options: argparse.Namespace) -> Report:
+    """What ``add_arguments`` were parsed into; ValueError and OSError where the input is at fault."""
+    from scratchwarp.stage.open import gathered_diagnostics
+    from scratchwarp.stage.reading import Warnings
+
+    from . import pictures
+    from .asset_folder import build, replaced, thumbnail_file
+
+    if options.thumbnail and options.no_thumbnail:
+        raise WrongUsage("--thumbnail and --no-thumbnail exclude each other")
+    name = options.name or Path(options.stage).stem.replace("-", "_").replace(".", "_")
+    drawn = None
+    if options.thumbnail:
+        drawn = thumbnail_file(options.thumbnail)
+    elif not options.no_thumbnail:
+        options.quality, options.camera = None, None
+
+        def drawn(entry: Path, target: Path) -> None:
+            from scratchwarp import image
+
+            image.write_layers({"color": pictures.picture(entry, options)}, target)
+
+    heard = Warnings()  # missing files are in the manifest, once
+    with gathered_diagnostics(options.stage, heard), replaced(Path(options.out), options.stage) as folder:
+        manifest = build(options.stage, folder, name, options.assetVersion, drawn, not options.no_usdz)
+    lines = [f"{options.out}/{row['path']}  {row['bytes']} bytes" for row in manifest["files"]]
+    lines += [f"warning: {path} cannot be found and is left out" for path in manifest["missing"]]
+    return Report({"out": options.out, **manifest}, tuple(lines))
+
+
+COMMAND = Command(
+    name="publish",
+    says="publish a stage as an asset that needs nothing outside its folder",
+    examples=(
+        "scratchwarp publish worn.usda published/cup --name cup --assetVersion 1.2",
+        "scratchwarp publish worn.usda published/cup --thumbnail photo.png --json",
+    ),
+    add_arguments=add_arguments,
+    run=run,
+    renders=True,
+)
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Command line of this script."""
+    return COMMAND.main(argv)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
