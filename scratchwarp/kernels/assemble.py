@@ -1,7 +1,7 @@
 """Scene + EffectPlan + simulated tables -> the kernel's key and arguments."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -32,13 +32,15 @@ class Assembled:
 
     Attributes:
         key: specialisation. inputs: arguments after the window and before the film, in the kernel's order.
-        alive: objects that must outlive the launches. warnings: what cannot be honoured.
+        alive: objects that must outlive the launches. warnings: what cannot be honoured. numbers: of what was built,
+            for ``Film.stats``.
     """
 
     key: KernelKey
     inputs: tuple[Any, ...]
     alive: tuple[Any, ...]
     warnings: tuple[str, ...]
+    numbers: Mapping[str, int] = field(default_factory=dict)
 
 
 def light_kinds(plan: EffectPlan) -> tuple[str, ...]:
@@ -242,5 +244,6 @@ def assemble(
         lambda: grooves.pack(scene, plan, key, shape, device),
     )
     scratch_set.grooves = cut.arrays
+    numbers = {"groove_pieces": cut.count, "groove_bytes": cut.memory} if key.grooves else {}
     inputs = (camera_data(scene, plan), shape.arrays, stuff.arrays, scratch_set, light_set)
-    return Assembled(key, inputs, (shape, stuff, packed, sets, sparkle, responding, cut), packed.warnings)
+    return Assembled(key, inputs, (shape, stuff, packed, sets, sparkle, responding, cut), packed.warnings, numbers)

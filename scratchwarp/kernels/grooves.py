@@ -12,8 +12,9 @@ from ..plan.layers import conductor_index
 from ..reflectance.base_device import CONDUCTOR, DIELECTRIC, SCHLICK, Base
 from ..reflectance.grooves import Pattern
 from ..reflectance.grooves.solid_device import Piece
-from ..scene import Scene
+from ..scene import Curves, Scene
 from ..scratches.paths import Path, lay_out
+from ..scratches.project import all_in_uv
 from .geometry import PackedGeometry
 from .groove_arrays_device import GrooveArrays, GrooveRecord
 from .key import KernelKey
@@ -133,7 +134,8 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
     uv = g.uvs.numpy().reshape(-1, 3, 2).astype(float)
     scales, handed = g.pattern_scale.numpy(), _handed(shape)
     of_face = np.full(len(material), -1, np.int32)
-    joined, known = _Joined(), {}
+    joined = _Joined()
+    known: dict[tuple[float, ...], int] = {}
     bases: list[Any] = []
     for m, groove in enumerate(plan.grooves):
         if groove is None:
@@ -149,8 +151,12 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
                     continue
                 low, high = uv[faces].min((0, 1)), uv[faces].max((0, 1))
                 asked = (m, hand, *np.round(np.concatenate([scales[i], low, high]), 9).tolist())
+                sets = [[scene.curves[c] for c in own.layer.curves] for own in groove.layers]
+                if any(c.space == "object" for own in sets for c in own):
+                    asked = (*asked, float(i))  # they lie where this surface is
                 if asked not in known:
-                    known[asked] = _pattern(scene, groove, numbers, low, high, scales[i], hand, joined)
+                    sets = [all_in_uv(own, shape.mesh, uv, faces, scales[i]) for own in sets]
+                    known[asked] = _pattern(groove, numbers, (low, high, scales[i], hand), sets, joined)
                 of_face[faces] = known[asked]
     arrays.of_face = wp.array(of_face, dtype=int, device=device)
     memory = joined.pack(arrays, device) if joined.records else 0
@@ -161,16 +167,19 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
 
 
 def _pattern(
-    scene: Scene, groove: GroovePlan, numbers: list[int], low: Array, high: Array, scale: Array, hand: float,
+    groove: GroovePlan, numbers: list[int], box: tuple[Array, Array, Array, float], curves: list[list[Curves]],
     joined: _Joined,
 ) -> int:  # fmt: skip
-    """Number of the pattern of a material over a part of a surface, -1 where it has no groove."""
+    """Number of the pattern of a material over a part of a surface, -1 where it has no groove.
+
+    ``box``: uv from and to, micrometres a unit of u and of v, -1 for a mirrored mapping.
+    """
+    low, high, scale, hand = box
     paths: list[Path] = []
     sections: list[Array] = []
     own: list[int] = []
-    for plan, number in zip(groove.layers, numbers, strict=True):
-        curves = [scene.curves[c] for c in plan.layer.curves]
-        laid = lay_out(plan.layer, low, high, scale, hand, curves)
+    for plan, number, own_curves in zip(groove.layers, numbers, curves, strict=True):
+        laid = lay_out(plan.layer, low, high, scale, hand, own_curves)
         paths += laid
         sections += [_section(plan, path) for path in laid]
         own += [number] * len(laid)
@@ -179,7 +188,8 @@ def _pattern(
                 f"{plan.layer.label}: it calls for {len(paths)} grooves, more than {MOST_PATHS}; set its model to "
                 "table, or make them longer or wider"
             )
-    pattern = Pattern([path.points for path in paths], sections)
+    ends = [dict(plan.layer.extra).get("ends", "cap") for plan in groove.layers]
+    pattern = Pattern([path.points for path in paths], sections, "mitre" if "mitre" in ends else "cap")
     if not len(pattern.table):
         return -1
     width = float(np.mean([path.width for path in paths]))

@@ -175,6 +175,7 @@ def render(
         "kernels_launched": state["launches"],
         "tables_simulated": len(tables),
         "invalid_samples": invalid,
+        **built.numbers,
     }
     header = develop.metadata(scene, plan, key, traced - clock, time.process_time() - cpu)
     return Film(images, stats, header, plan.size, plan.window, warnings)

@@ -224,6 +224,7 @@ class Session:
             "kernels_launched": self._launches,
             "tables_simulated": len(self.redone.simulated),
             "invalid_samples": invalid,
+            **self._built.numbers,
         }
         # the hash of a large scene takes longer than a step: only the finished image carries it
         key = render_digest(self.scene, step.plan, self._built) if self.finished else ""
