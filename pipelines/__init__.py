@@ -6,6 +6,7 @@ Files:
     compare, contact_sheet    show stages and images beside one another; pictures renders and arranges them
     publish                   makes an asset folder: asset_folder lays it out, gather copies what it needs
     turntable, zoom           move the camera, by camera_moves
+    validate                  checks a stage in all its variants
     command, commands         what makes a pipeline a sub-command of scratchwarp
     author_demo               writes the demo stages: demo_ball, demo_kettle, demo_panel, demo_plain, and those that
                               diffract: demo_spoon, demo_disc, demo_vinyl; demo_shapes has their meshes, demo_usd puts

@@ -19,11 +19,13 @@ class Report:
     Attributes:
         record: the same for programs: what ``--json`` prints.
         lines: for people, unless ``--quiet``. status: of the process, 0 or 1.
+        findings: for people in any case, before the lines.
     """
 
     record: Mapping[str, Any] | Sequence[Any]
     lines: tuple[str, ...] = ()
     status: int = 0
+    findings: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -69,7 +71,7 @@ def show(report: Report, options: argparse.Namespace) -> int:
     """Print a report as its options ask and return the status."""
     if options.json:
         print(json.dumps(report.record, indent=1, default=str), flush=True)
-    elif not options.quiet:
-        for line in report.lines:
+    else:
+        for line in (*report.findings, *(() if options.quiet else report.lines)):
             print(line, flush=True)
     return report.status

@@ -212,7 +212,6 @@ _EXAMPLES = {
     "simulate": """scratchwarp simulate quartic quartic.exr --depth 0.4 --plot quartic.png
   scratchwarp simulate groove.csv groove.png --metal gold --resolution 128
   scratchwarp simulate ball.usda tables.##.npz""",
-    "validate": "scratchwarp validate ball.usda\n  scratchwarp validate ball.usda --strict --json",
     "view": "scratchwarp view ball.usda\n  scratchwarp view ball.usda --screenshot look.png --frame 12\n"
     "  scratchwarp view ball.usda --web --port 8765\n"
     "  scratchwarp view ball.usda --profile hairlines\n  scratchwarp view quartic\n  scratchwarp view lobe\n"
@@ -295,10 +294,6 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("--polarised", action="store_true", help="polarised products along the path")
     made.add_argument("--plot", metavar="FILE", help="a picture, too: bounces in red, green, blue above the profile")
     made.add_argument("--seed", type=int, default=0, help="[0]")
-
-    made = command("validate", "check a stage against the scratch schemas", json_too=True)
-    made.add_argument("stage", metavar="FILE", help="USD file")
-    made.add_argument("--strict", "-t", action="store_true", help="warnings count as errors")
 
     made = command("view", "show a stage, its scratches, profiles and tables in a window")
     for title, keys in (("keys", KEYS), ("keys with --profile", PROFILE_KEYS), ("keys on a BRDF", BRDF_KEYS)):

@@ -22,7 +22,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run one sub-command and return its exit status; argparse itself leaves with 2 on wrong usage."""
     args = arguments.parser().parse_args(argv)
     try:
-        if args.command in COMMANDS and args.command != "validate":
+        if args.command in COMMANDS:
             _start_warp()
         status = COMMANDS.get(args.command, pipeline)(args)
         sys.stdout.flush()
@@ -151,23 +151,6 @@ def simulate(args: Command) -> int:
         if not args.quiet:
             print(f"{out}: {name}, {table.rays} rays, largest loss {float(np.max(table.lost)):.2g}", flush=True)
     return 0
-
-
-def validate(args: Command) -> int:
-    """Check STAGE against the scratch schemas; status 1 when it has errors (with --strict: or warnings)."""
-    from .stage.validation import validate as check
-
-    findings = check(args.stage)
-    if args.json:
-        rows = [{"severity": f.severity, "rule": f.rule, "prim": f.path, "message": f.message} for f in findings]
-        print(json.dumps(rows, indent=1))
-    else:
-        for finding in findings:
-            print(finding)
-        if not findings and not args.quiet:
-            print(f"{args.stage}: nothing to find fault with")
-    counted = ("error", "warning") if args.strict else ("error",)
-    return 1 if any(f.severity in counted for f in findings) else 0
 
 
 def view(args: Command) -> int:
@@ -391,4 +374,4 @@ def _plain(value: Any) -> Any:
     return value.tolist() if hasattr(value, "tolist") else str(value)
 
 
-COMMANDS = {run.__name__: run for run in (render, explain, simulate, validate, view, fit, scratchmap, demo, cache)}
+COMMANDS = {run.__name__: run for run in (render, explain, simulate, view, fit, scratchmap, demo, cache)}

@@ -31,15 +31,18 @@ class Finding:
         rule: name of the validator, for example ``scratchwarp:ScratchValues``.
         path: path of the prim, "/" when the problem is one of the whole file.
         message: what is wrong, with the value, and what to do; starts with the path of the prim.
+        variants: the combination of variants that has it; "" for the stage as it is.
     """
 
     severity: str
     rule: str
     path: str
     message: str
+    variants: str = ""
 
     def __str__(self) -> str:
-        return f"{self.severity}: {self.message} [{self.rule}]"
+        where = f" (with {self.variants})" if self.variants else ""
+        return f"{self.severity}: {self.message}{where} [{self.rule}]"
 
 
 def validate(path: str | Path, core: bool = True) -> list[Finding]:

@@ -1,0 +1,62 @@
+"""Check a stage against the scratch schemas and OpenUSD's rules, in every combination of its variants."""
+
+import argparse
+import sys
+from collections.abc import Sequence
+
+from .command import Command, Report
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """What ``scratchwarp validate`` understands."""
+    parser.add_argument("stage", metavar="FILE", help="USD file")
+    parser.add_argument("--strict", "-t", action="store_true", help="warnings count as errors")
+    parser.add_argument("--skipVariants", "-s", action="store_true", help="only the variants that are chosen")
+    parser.add_argument("--fix", metavar="OUT", help="a copy beside FILE, mended where no guess is needed")
+
+
+def run(options: argparse.Namespace) -> Report:
+    """What ``add_arguments`` were parsed into: findings, and status 1 when there are errors (strictly: or warnings)."""
+    from scratchwarp.stage.validation import validate
+    from scratchwarp.stage.validation_variants import fixed_copy, validate_variants
+
+    mended: list[str] = []
+    stage = options.stage
+    if options.fix:
+        mended, stage = fixed_copy(stage, options.fix), options.fix
+    findings, count = (validate(stage), 1) if options.skipVariants else validate_variants(stage)
+    rows = [
+        {"severity": f.severity, "rule": f.rule, "prim": f.path, "message": f.message}
+        | ({"variants": f.variants} if f.variants else {})
+        for f in findings
+    ]
+    lines = [f"fixed: {text}" for text in mended]
+    if not findings:
+        combined = f" in {count} combinations of variants" if count > 1 else ""
+        lines.append(f"{stage}: nothing to find fault with{combined}")
+    counted = ("error", "warning") if options.strict else ("error",)
+    failed = any(f.severity in counted for f in findings)
+    record = {"fixed": mended, "findings": rows} if options.fix else rows
+    return Report(record, tuple(lines), int(failed), tuple(map(str, findings)))
+
+
+COMMAND = Command(
+    name="validate",
+    says="check a stage against the scratch schemas, in all its variants",
+    examples=(
+        "scratchwarp validate ball.usda",
+        "scratchwarp validate ball.usda --strict --json",
+        "scratchwarp validate ball.usda --fix ball_fixed.usda",
+    ),
+    add_arguments=add_arguments,
+    run=run,
+)
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Command line of this script."""
+    return COMMAND.main(argv)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
