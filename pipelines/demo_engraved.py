@@ -50,9 +50,9 @@ def vinyls(path: Path | str, detail: float = 1.0) -> Path:
         usd.mesh(stage, f"{name}Label", ring(RECORD[0], RECORD[1], around, 1, RECORD[-1]), label, (at, 0.0, 0.0))
     cloth = usd.material(stage, "cloth", diffuseColor=(0.32, 0.3, 0.27), roughness=0.9)
     usd.mesh(stage, "table", shapes.lathe([[(160.0, 0.0), (0.0, 0.0)]], 48), cloth, (0.0, -0.2, 0.0))
-    usd.sphere_light(stage, "lamp", (30.0, 90.0, -70.0), 6.0, 260.0, (1.0, 0.9, 0.76))
-    usd.sphere_light(stage, "spot", (-70.0, 70.0, 30.0), 4.0, 240.0, (0.8, 0.9, 1.0))
-    usd.dome_light(stage, "room", 0.3, (0.9, 0.95, 1.0))
+    usd.distant_light(stage, "lamp", (-0.25, -0.8, 0.6), 0.0, 4.0, (1.0, 0.9, 0.76))
+    usd.distant_light(stage, "spot", (0.75, -0.6, -0.2), 0.0, 3.0, (0.8, 0.9, 1.0))
+    usd.dome_light(stage, "room", 0.2, (0.9, 0.95, 1.0))
     usd.camera(stage, (0.0, 88.0, 82.0), (0.0, 0.0, 1.0), lens=29.0)
     usd.settings(stage, 960, 360)
     camera = stage.GetPrimAtPath("/World/camera")
@@ -96,9 +96,9 @@ def roof(path: Path | str, detail: float = 1.0) -> Path:
     plaster = usd.material(stage, "plaster", diffuseColor=(0.62, 0.56, 0.46), roughness=0.9)
     wall = shapes.extruded([(-14.0, 0.0), (-14.0, 110.0 + 14.0 * np.tan(PITCH))], EAVES - 24.0)
     usd.mesh(stage, "wall", wall, plaster)
-    usd.distant_light(stage, "sun", (0.75, -0.62, -0.5), 0.5, 3.4, (1.0, 0.93, 0.8))
+    usd.distant_light(stage, "sun", (0.75, -0.62, -0.5), 0.0, 3.4, (1.0, 0.93, 0.8))
     usd.dome_light(stage, "sky", 0.55, (0.55, 0.75, 1.0))
-    usd.camera(stage, (-190.0, 270.0, 250.0), (4.0, 152.0, -66.0), lens=36.0)
+    usd.camera(stage, (-190.0, 270.0, 250.0), (-8.0, 153.0, -66.0), lens=44.0)
     usd.settings(stage)
     return usd.save(stage, path, "A tiled roof.")
 
@@ -141,7 +141,7 @@ def column(path: Path | str, detail: float = 1.0) -> Path:
     rings = [np.array([(-0.1, v, 0.0), (1.1, v, 0.0)]) for v in (low - 0.02, high + 0.02)]
     _cut(stage, stone, "beads", bead, rings, 16_000.0, 7_000.0)
     chisel = usd.profile(stone, "chisel", shape="trapezoid", floorWidth=0.25)
-    _cut(stage, stone, "writing", chisel, writing(max(4, int(24 * detail))), 3_600.0, 2_400.0)
+    _cut(stage, stone, "writing", chisel, writing(max(4, int(12 * detail))), 3_000.0, 2_400.0)
     usd.mesh(stage, "shaft", shapes.lathe([[(COLUMN, 0.0), (COLUMN, TALL)]], around), stone)
     plain = usd.material(stage, "plain", diffuseColor=(0.56, 0.47, 0.35), roughness=0.9)
     n = max(6, int(24 * detail))
@@ -152,9 +152,9 @@ def column(path: Path | str, detail: float = 1.0) -> Path:
     curve = np.stack([-60 - 30 * np.sin(bend), 30 - 30 * np.cos(bend)], axis=-1)
     outline = np.concatenate([[(120.0, 0.0), (-50.0, 0.0)], curve, [(-90.0, 180.0)]])
     usd.mesh(stage, "backdrop", shapes.extruded(outline, 400.0), floor, (0.0, -5.0, 0.0))
-    usd.distant_light(stage, "sun", (0.8, -0.5, -0.35), 0.5, 3.4, (1.0, 0.9, 0.74))
+    usd.distant_light(stage, "sun", (0.8, -0.5, -0.35), 0.0, 3.4, (1.0, 0.9, 0.74))
     usd.dome_light(stage, "sky", 0.4, (0.7, 0.82, 1.0))
-    usd.camera(stage, (0.0, 46.0, 120.0), (0.0, 33.0, 0.0), lens=29.0)
+    usd.camera(stage, (0.0, 46.0, 120.0), (3.0, 31.5, 0.0), lens=33.0)
     usd.settings(stage, 480, 480)
     camera = stage.GetPrimAtPath("/World/camera")
     camera.GetAttribute("verticalAperture").Set(camera.GetAttribute("horizontalAperture").Get())
@@ -181,12 +181,12 @@ SIGNS: list[list[list[tuple[float, float]]]] = [
 
 
 def writing(columns: int) -> list[np.ndarray]:
-    """Signs in two lines around the shaft, as polylines [k, 3] in uv; the last point of a loop is its first."""
+    """Signs in three lines around the shaft, as polylines [k, 3] in uv; the last point of a loop is its first."""
     low, high = BAND
-    height = 0.5 * (high - low)
+    height = (high - low) / 3
     size = min(0.72 * height, 0.72 / columns)
     lines = []
-    for row in range(2):
+    for row in range(3):
         for i in range(columns):
             corner = np.array([(i + 0.5) / columns - 0.5 * size, low + (row + 0.5) * height - 0.5 * size])
             for stroke in SIGNS[(5 * row + 7 * i) % len(SIGNS)]:

@@ -43,7 +43,7 @@ def grooved_sphere(path: Path | str, detail: float = 1.0) -> Path:
         usd.mesh(stage, f"strip{i + 10}", strip, dark if i % 2 else light, (6.0 * i, 0.0, 0.0))
     usd.rect_light(stage, "key", (-26.0, 40.0, 24.0), (0.0, 4.0, 0.0), (20.0, 20.0), 11.0, (1.0, 0.95, 0.88))
     usd.rect_light(stage, "side", (40.0, 16.0, 12.0), (0.0, 4.0, 0.0), (8.0, 30.0), 7.0, (0.86, 0.93, 1.0))
-    usd.sphere_light(stage, "bulb", (8.0, 36.0, 30.0), 0.6, 900.0)
+    usd.distant_light(stage, "sun", (-0.3, -0.7, -0.6), 0.0, 1.5, (1.0, 0.97, 0.92))
     usd.dome_light(stage, "ambient", 0.5, (0.86, 0.92, 1.0))
     usd.camera(stage, (0.0, 15.0, 46.0), (0.0, 4.6, 0.0), lens=42.0)
     usd.settings(stage, integrator="path", maxDepth=6)
