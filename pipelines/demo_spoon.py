@@ -33,7 +33,7 @@ TOP_V, BOTTOM_V, RIM_V = 0.7, 0.3, 0.05  # where the three charts lie in the uv 
 def spoon(path: Path | str, detail: float = 1.0) -> Path:
     """Under one sphere of 5 mm at 1 m; ``detail`` scales the number of faces and scratches."""
     stage = _table(detail)
-    usd.sphere_light(stage, "bulb", _away((0.06, 0.84, -0.54), 100.0), 0.5, 40000.0)
+    usd.sphere_light(stage, "bulb", _away((0.06, 0.84, -0.54), 100.0), 0.5, 150000.0)
     return usd.save(stage, path, "A spoon with ten thousand scratches that diffract, under a small sphere.")
 
 
@@ -70,7 +70,7 @@ def _away(direction: tuple[float, float, float], distance: float) -> tuple[float
 def _table(detail: float) -> Usd.Stage:
     """The scratched spoon on a dark table, with its camera."""
     stage = usd.new_stage()
-    steel = metal(stage, "steel", "iron", 0.035)
+    steel = metal(stage, "steel", "iron", 0.004)
     usd.wave(steel)
     groove = usd.profile(steel, "groove", shape="rectangle")
     count = max(20, int(SCRATCHES * detail))
@@ -81,7 +81,7 @@ def _table(detail: float) -> Usd.Stage:
     c, s = float(np.cos(turn)), float(np.sin(turn))
     placed = [c, 0, -s, 0, 0, 1, 0, 0, s, 0, c, 0, -0.5 * LENGTH * c, 0.02, 0.5 * LENGTH * s, 1]
     usd.mesh(stage, "spoon", shape(detail), steel, [round(x, 7) for x in placed])
-    slate = usd.material(stage, "slate", diffuseColor=(0.03, 0.032, 0.036), roughness=0.6, ior=1.45)
+    slate = usd.material(stage, "slate", diffuseColor=(0.006, 0.0065, 0.008), roughness=0.6, ior=1.45)
     floor = shapes.lathe([[(80.0, 0.0), (0.0, 0.0)]], max(12, int(48 * detail)))
     usd.mesh(stage, "table", floor, slate)
     usd.camera(stage, (0.0, 33.0, 24.0), (0.0, 0.7, 0.0))
