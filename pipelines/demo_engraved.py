@@ -152,7 +152,7 @@ def column(path: Path | str, detail: float = 1.0) -> Path:
     curve = np.stack([-60 - 30 * np.sin(bend), 30 - 30 * np.cos(bend)], axis=-1)
     outline = np.concatenate([[(120.0, 0.0), (-50.0, 0.0)], curve, [(-90.0, 180.0)]])
     usd.mesh(stage, "backdrop", shapes.extruded(outline, 400.0), floor, (0.0, -5.0, 0.0))
-    usd.distant_light(stage, "sun", (0.8, -0.5, -0.35), 0.0, 3.4, (1.0, 0.9, 0.74))
+    usd.distant_light(stage, "sun", (0.8, -0.5, -0.35), 0.0, 4.4, (1.0, 0.9, 0.74))
     usd.dome_light(stage, "sky", 0.4, (0.7, 0.82, 1.0))
     usd.camera(stage, (0.0, 46.0, 120.0), (3.0, 31.5, 0.0), lens=33.0)
     usd.settings(stage, 480, 480)

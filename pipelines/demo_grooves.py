@@ -110,15 +110,15 @@ def _parallel() -> tuple[Usd.Stage, UsdShade.Material]:
     usd.distant_light(stage, "sun", (-0.2, -0.75, 0.3), 0.0, 1.7, (1.0, 0.95, 0.86))
     usd.dome_light(stage, "sky", 0.2, (0.75, 0.86, 1.0))
     usd.camera(stage, (-16.0, 10.0, 25.5), (-2.4, 0.0, 3.8))
-    usd.settings(stage)
+    usd.settings(stage, integrator="path")
     return stage, bronze
 
 
 def _crossing() -> tuple[Usd.Stage, UsdShade.Material]:
     stage = usd.new_stage()
-    steel = usd.material(stage, "steel", diffuseColor=(0.36, 0.4, 0.45), roughness=0.4, ior=1.8)
+    steel = usd.material(stage, "steel", diffuseColor=(0.36, 0.4, 0.45), roughness=0.65)
     usd.distant_light(stage, "sun", (0.65, -0.6, 0.45), 0.0, 4.6, (1.0, 0.95, 0.88))
     usd.dome_light(stage, "sky", 0.2, (0.75, 0.86, 1.0))
     usd.camera(stage, (0.0, 26.0, 24.0), (0.0, 0.0, 0.8))
-    usd.settings(stage)
+    usd.settings(stage, integrator="path")
     return stage, steel

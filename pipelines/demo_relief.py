@@ -13,6 +13,7 @@ import numpy as np
 from .demo_shapes import Shape
 
 Face = np.ndarray  # [k, 3], counter-clockwise seen from outside
+Boxed = tuple[np.ndarray, tuple[float, ...]]
 TINY = 1e-12  # of an area: smaller pieces of it are dropped
 
 
@@ -65,12 +66,12 @@ def crossed(side: float, cuts: Sequence[Cut]) -> Shape:
     ground = Slab(square, np.zeros(2), 0.0, -1)
     faces = []
     for slab in [ground, *slabs]:
-        regions = [_inside(slab.polygon, square)]
+        regions = [_boxed(_inside(slab.polygon, square))]
         for other in slabs:
             if other.owner != slab.owner and _meet(slab.polygon, other.polygon):
-                low = _lower(other, slab)
+                low = _boxed(_lower(other, slab))
                 regions = [rest for region in regions for rest in _without(region, low)]
-        for region in regions:
+        for region, _ in regions:
             if _area(region) > TINY * side * side:
                 faces.append(np.column_stack([region, slab.height(region)]))
     faces += [wall for i, cut in enumerate(cuts) for wall in _walls(cut, i, slabs, side)]
@@ -138,17 +139,23 @@ def _inside(polygon: np.ndarray, other: np.ndarray) -> np.ndarray:
     return polygon
 
 
-def _without(polygon: np.ndarray, other: np.ndarray) -> list[np.ndarray]:
+def _boxed(polygon: np.ndarray) -> Boxed:
+    """A polygon with its bounds (least x, least y, most x, most y); an empty one meets nothing."""
+    if len(polygon) == 0:
+        return polygon, (np.inf, np.inf, -np.inf, -np.inf)
+    return polygon, (*polygon.min(0).tolist(), *polygon.max(0).tolist())
+
+
+def _without(region: Boxed, cut: Boxed) -> list[Boxed]:
     """What is left of a convex polygon, in convex pieces."""
-    if len(other) < 3 or not _meet(polygon, other):
-        return [polygon] if len(polygon) else []
-    if _area(_inside(polygon, other)) <= TINY * _area(polygon):
-        return [polygon]
+    (polygon, (a, b, c, d)), (other, (e, f, g, h)) = region, cut
+    if a >= g or e >= c or b >= h or f >= d or _area(_inside(polygon, other)) <= TINY * _area(polygon):
+        return [region] if len(polygon) else []
     pieces = []
     for normal, limit in _sides(other):
         outside = _half(polygon, -normal, -limit)
         if len(outside):
-            pieces.append(outside)
+            pieces.append(_boxed(outside))
         polygon = _half(polygon, normal, limit)
     return pieces
 
