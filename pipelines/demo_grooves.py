@@ -13,7 +13,6 @@ from pxr import Sdf, Usd, UsdShade
 from . import demo_relief as relief
 from . import demo_shapes as shapes
 from . import demo_usd as usd
-from .demo_ball import metal
 
 SIDE = 80.0  # of the plates
 UNIT = 1e4  # micrometres in a centimetre
@@ -32,20 +31,20 @@ VIEW = 11.0  # half the part of the plate that has scratches
 
 def grooves_parallel(path: Path | str, detail: float = 1.0) -> Path:
     """Parallel grooves from near to far; ``detail`` does nothing to a plate of two triangles."""
-    stage, bronze = _parallel()
-    cut = usd.profile(bronze, "cut", shape="points", points=RULED)
+    stage, clay = _parallel()
+    cut = usd.profile(clay, "cut", shape="points", points=RULED)
     usd.layer(
-        bronze, "ruled", cut, model="groove", distribution="linear", width=RULED_WIDTH, depth=RULED_DEPTH,
+        clay, "ruled", cut, model="groove", distribution="linear", width=RULED_WIDTH, depth=RULED_DEPTH,
         pitch=RULED_PITCH,
     )  # fmt: skip
-    usd.mesh(stage, "plate", flat(), bronze)
+    usd.mesh(stage, "plate", flat(), clay)
     return usd.save(stage, path, "Parallel grooves.")
 
 
 def grooves_parallel_true(path: Path | str, detail: float = 1.0) -> Path:
     """The same surface as triangles: 7 quads and the ground for each of some 400 grooves."""
-    stage, bronze = _parallel()
-    usd.mesh(stage, "plate", ruled(), bronze)
+    stage, clay = _parallel()
+    usd.mesh(stage, "plate", ruled(), clay)
     return usd.save(stage, path, "Parallel grooves as true geometry.")
 
 
@@ -106,12 +105,12 @@ def _scratches(stage: Usd.Stage, detail: float) -> Sdf.Path:
 
 def _parallel() -> tuple[Usd.Stage, UsdShade.Material]:
     stage = usd.new_stage()
-    bronze = metal(stage, "bronze", "copper", 0.3)
-    usd.distant_light(stage, "sun", (-0.2, -0.75, 0.3), 0.0, 1.7, (1.0, 0.95, 0.86))
+    clay = usd.material(stage, "clay", diffuseColor=(0.5, 0.27, 0.13), roughness=0.65)
+    usd.distant_light(stage, "sun", (-0.45, -0.6, 0.6), 0.0, 4.2, (1.0, 0.95, 0.86))
     usd.dome_light(stage, "sky", 0.2, (0.75, 0.86, 1.0))
-    usd.camera(stage, (-16.0, 10.0, 25.5), (-2.4, 0.0, 3.8))
+    usd.camera(stage, (-12.0, 9.0, 19.0), (-1.5, 0.0, 2.2))
     usd.settings(stage, integrator="path")
-    return stage, bronze
+    return stage, clay
 
 
 def _crossing() -> tuple[Usd.Stage, UsdShade.Material]:
