@@ -3,7 +3,7 @@
 import argparse
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -48,8 +48,16 @@ def run(options: argparse.Namespace) -> Report:
 
 
 def variants(source: str, name: str, options: argparse.Namespace) -> dict[str, Any]:
-    """"<stage> <variant>" -> picture, for each variant of the set ``name`` on the stage's root prims; the choice is
-    made on a session layer. ValueError where no root prim has the set."""
+    """"<stage> <variant>" -> picture, for each variant of a set; raises as ``sessions`` does."""
+    return {
+        f"{source} {choice}": pictures.picture(source, options, session_layer=session)
+        for choice, session in sessions(source, name)
+    }
+
+
+def sessions(source: str, name: str) -> Iterator[tuple[str, str]]:
+    """(variant, session layer that chooses it) for each variant of the set ``name`` on the stage's root prims; the
+    layers are gone afterwards. ValueError where no root prim has the set."""
     from pxr import Sdf
 
     from scratchwarp.stage.open import open_stage
@@ -60,15 +68,13 @@ def variants(source: str, name: str, options: argparse.Namespace) -> dict[str, A
         raise ValueError(f"{source}: no root prim has a variant set {name!r}")
     choices = dict.fromkeys(v for p in roots for v in p.GetVariantSets().GetVariantSet(name).GetVariantNames())
     known = [v for v in ("new", "used", "worn") if v in choices]
-    made = {}
     with tempfile.TemporaryDirectory() as folder:
         for choice in dict.fromkeys((*known, *choices)):
             layer = Sdf.Layer.CreateNew(str(Path(folder) / f"{choice}.usda"))
             for root in roots:
                 Sdf.CreatePrimInLayer(layer, root.GetPath()).variantSelections[name] = choice
             layer.Save()
-            made[f"{source} {choice}"] = pictures.picture(source, options, session_layer=layer.realPath)
-    return made
+            yield choice, layer.realPath
 
 
 COMMAND = Command(

@@ -11,7 +11,7 @@ import zipfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -31,6 +31,14 @@ def default_folder() -> Path:
     own = os.environ.get(_FOLDER_VARIABLE)
     base = Path(own) if own else Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "scratchwarp"
     return base / "profiles"
+
+
+class TableStore(Protocol):
+    """Whatever keeps tables."""
+
+    def table(self, key: str, simulate: Callable[[], Table]) -> Table:
+        """The table under ``key``, simulated where it is not there."""
+        ...
 
 
 @dataclass(frozen=True)

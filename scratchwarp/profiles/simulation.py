@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from scratchwarp.profiles.cache import Store, table_key
+from scratchwarp.profiles.cache import TableStore, table_key
 from scratchwarp.profiles.launch import threads_of
 from scratchwarp.profiles.profile import Profile
 from scratchwarp.profiles.reflectors import reflecting
@@ -27,7 +27,7 @@ def simulate(
     theta_model: str = "gamma",
     polarised: bool = False,
     threads: int | None = None,
-    store: Store | None = None,
+    store: TableStore | None = None,
 ) -> Table:
     """The table of a cross-section (Raymond 2016, sections 4.1 and 4.2, in the normalisation of ``Table``).
 
@@ -76,7 +76,7 @@ def simulate_full(
     polarised: bool = False,
     threads: int | None = None,
     theta_model: str = "exact",
-    store: Store | None = None,
+    store: TableStore | None = None,
     **request: Any,
 ) -> np.ndarray:
     """rho_s at each of ``thetas`` [rad], float32 ``[T, M, M]`` (``[T, M, M, 3]`` for a coloured reflector): one

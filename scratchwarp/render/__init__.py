@@ -9,6 +9,7 @@ Files:
     film        Film and its AOVs
     develop     sums -> AOVs and header
     checkpoint  finished tiles on disk
+    baked       tables simulated beforehand, beside the stage
     progress    the progress bar
 
 The room can be called like its function: ``scratchwarp.render(scene, plan)``.

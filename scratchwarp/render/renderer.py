@@ -14,8 +14,9 @@ from ..kernels import Assembled, assemble
 from ..plan import EffectPlan, TablePlan
 from ..scene import Scene
 from ..scene.digest import digest
+from . import baked, develop
 from . import checkpoint as checkpoints
-from . import develop
+from .baked import Baked, Oven
 from .film import Film
 from .launch import SAMPLES_A_LAUNCH, SUMS, film_arrays, launcher, loaded
 from .progress import Progress, silent
@@ -25,7 +26,9 @@ from .tiles import Tile, run, tiles
 CHECKPOINT_EVERY = 10.0
 
 
-def _simulated(table: TablePlan, profile: profiles.Profile, threads: int) -> profiles.Table:
+def _simulated(
+    table: TablePlan, profile: profiles.Profile, threads: int, store: Baked | Oven | None = None
+) -> profiles.Table:
     """The table of one cross-section, as ``table`` asks for it."""
     if table.source == "facets":
         return profiles.facet_table(profile, table.fresnel, table.resolution, table.theta_model)
@@ -39,38 +42,46 @@ def _simulated(table: TablePlan, profile: profiles.Profile, threads: int) -> pro
         sampler=table.sampler,
         incidence=table.incidence,
         threads=threads,
+        store=store,
     )
 
 
 def simulate_table(
-    table: TablePlan, threads: int, known: dict[tuple[Any, ...], profiles.Table] | None = None
+    table: TablePlan,
+    threads: int,
+    known: dict[tuple[Any, ...], profiles.Table] | None = None,
+    store: Baked | Oven | None = None,
 ) -> profiles.Table:
     """One of the plan's profile tables; ``known``: the cross-sections simulated for the table before, which it may
-    share, replaced by its own."""
+    share, replaced by its own; ``store``: tables baked before, or an oven that keeps them."""
     if not table.parts:
-        return _simulated(table, table.profile, threads)
+        return _simulated(table, table.profile, threads, store)
     known = {} if known is None else known
     how = (table.max_bounces, table.resolution, table.rays, table.sampler, table.incidence)
     asked = (table.source, table.fresnel, table.theta_model, *how)
     made: dict[tuple[Any, ...], profiles.Table] = {}
     for profile, _ in table.parts:
         key = (profile.token, asked)
-        made[key] = made.get(key) or known.get(key) or _simulated(table, profile, threads)
+        made[key] = made.get(key) or known.get(key) or _simulated(table, profile, threads, store)
     known.clear()
     known.update(made)
     return profiles.mixture([made[p.token, asked] for p, _ in table.parts], [share for _, share in table.parts])
 
 
-def simulate_tables(plan: EffectPlan, threads: int, progress: Progress = silent) -> list[profiles.Table]:
-    """The plan's profile tables, in order."""
+def simulate_tables(
+    plan: EffectPlan, threads: int, progress: Progress = silent, store: Baked | Oven | None = None
+) -> tuple[list[profiles.Table], int]:
+    """The plan's profile tables, in order, and how many of them had to be simulated."""
+    simulated = 0
     made: list[profiles.Table] = []
     known: dict[tuple[Any, ...], profiles.Table] = {}
     for number, table in enumerate(plan.tables):
         progress(number, len(plan.tables), "simulate")
-        made.append(simulate_table(table, threads, known))
+        made.append(simulate_table(table, threads, known, store))
+        simulated += store is None or table.source == "facets" or not store.note(table.users)
     if plan.tables:
         progress(len(plan.tables), len(plan.tables), "simulate")
-    return made
+    return made, simulated
 
 
 def render(
@@ -97,7 +108,8 @@ def render(
     wp.config.log_level = max(wp.config.log_level, wp.LOG_WARNING)
     wp.init()
     clock, cpu = time.perf_counter(), time.process_time()
-    tables = simulate_tables(plan, threads, progress)
+    bake = baked.find(scene.path)
+    tables, tables_simulated = simulate_tables(plan, threads, progress, bake)
     simulated = time.perf_counter()
     built = assemble(scene, plan, tables, device)
     kernel, fresh = loaded(built.key, device, progress)
@@ -159,7 +171,7 @@ def render(
     sums = {name: getattr(film, name).numpy() for name in SUMS}
     images = develop.aovs(sums, scene, spp)
     invalid = int(sums["invalid"].sum())
-    warnings = built.warnings + plan.warnings
+    warnings = built.warnings + plan.warnings + (tuple(bake.warnings) if bake else ())
     if invalid:
         warnings += (f"{invalid} of {total} samples were not finite and were left out",)
     stats: dict[str, Any] = {
@@ -173,7 +185,7 @@ def render(
         "samples": total,
         "kernels_compiled": int(fresh),
         "kernels_launched": state["launches"],
-        "tables_simulated": len(tables),
+        "tables_simulated": tables_simulated,
         "invalid_samples": invalid,
         **built.numbers,
     }
