@@ -81,7 +81,7 @@ def _table(detail: float) -> Usd.Stage:
     c, s = float(np.cos(turn)), float(np.sin(turn))
     placed = [c, 0, -s, 0, 0, 1, 0, 0, s, 0, c, 0, -0.5 * LENGTH * c, 0.02, 0.5 * LENGTH * s, 1]
     usd.mesh(stage, "spoon", shape(detail), steel, [round(x, 7) for x in placed])
-    slate = usd.material(stage, "slate", diffuseColor=(0.006, 0.0065, 0.008), roughness=0.6, ior=1.45)
+    slate = usd.material(stage, "slate", diffuseColor=(0.006, 0.0065, 0.008), roughness=1.0, ior=1.45)
     floor = shapes.lathe([[(80.0, 0.0), (0.0, 0.0)]], max(12, int(48 * detail)))
     usd.mesh(stage, "table", floor, slate)
     usd.camera(stage, (0.0, 33.0, 24.0), (0.0, 0.7, 0.0))
