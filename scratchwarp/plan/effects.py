@@ -163,11 +163,15 @@ def _light(kind: str, record: type) -> Callable[[Facts], Answer]:
     return rule
 
 
+def _any_transparent(f: Facts) -> bool:
+    return any(_transparent(m.surface) for m in f.materials)
+
+
 def _shadows(f: Facts) -> Answer:
     casting = [light.path for light in f.scene.lights if light.shadow]
     if not casting:
         return False, "no light casts shadows", ()
-    if not can_occlude(f.scene):
+    if not can_occlude(f.scene, _any_transparent(f)):
         return False, "nothing can occlude: no geometry, or one flat or convex body", ()
     return True, "geometry may stand between surfaces and these lights", tuple(casting)
 
@@ -215,8 +219,11 @@ def _sample_cones(f: Facts) -> Answer:
 
 
 def _indirect(f: Facts) -> Answer:
-    on = f.settings.integrator == "path"
-    return on, "integrator path" if on else "integrator direct", ()
+    if f.settings.integrator != "path":
+        return False, "integrator direct", ()
+    if not can_occlude(f.scene, _any_transparent(f)) and not any(f.grooves):
+        return False, "integrator path, but no surface reflects another: no geometry, or one flat or convex body", ()
+    return True, "integrator path", ()
 
 
 def _lens(f: Facts) -> Answer:

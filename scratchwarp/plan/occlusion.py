@@ -1,4 +1,4 @@
-"""Can any geometry stand between a surface and a light? If not, no shadow ray is traced."""
+"""Can any geometry stand between a surface and a light, or reflect another? If not, no ray looks for it."""
 
 import numpy as np
 
@@ -56,12 +56,26 @@ def is_convex(mesh: Mesh) -> bool:
     return bool((group == group[0]).all()) and len(points) - len(key) // 2 + m == 2
 
 
-def can_occlude(scene: Scene) -> bool:
-    """False when every light that a point can see reaches it: no geometry, or one flat or convex body."""
+def _encloses(scene: Scene, mesh: Mesh, transform: np.ndarray) -> bool:
+    """Whether the camera may be inside a convex body: on the same side of all its planes (a flat one has no inside)."""
+    eye = np.linalg.solve(transform, scene.camera.transform[:, 3])[:3]
+    a, b, c = (mesh.points[mesh.triangles[:, k]] for k in range(3))
+    height = (np.cross(b - a, c - a) * (eye - a)).sum(1)
+    return bool((height >= 0.0).all() or (height <= 0.0).all())
+
+
+def can_occlude(scene: Scene, transparent: bool = False) -> bool:
+    """False when no surface that the camera sees can be reached from another: no geometry, or one flat or convex body,
+    opaque (or ``transparent``) and seen from outside."""
     shown = [i for i in scene.instances if len(scene.meshes[i.mesh].triangles)]
     if not shown:
         return False
     if len(shown) > 1:
         return True
     mesh = scene.meshes[shown[0].mesh]
-    return len(mesh.triangles) > 200_000 or not is_convex(mesh)
+    if len(mesh.triangles) > 200_000 or not is_convex(mesh):
+        return True
+    flat = np.linalg.matrix_rank(mesh.points - mesh.points[0], tol=FLAT * float(np.ptp(mesh.points, axis=0).max())) < 3
+    if flat or abs(np.linalg.det(shown[0].transform[:3, :3])) == 0.0:
+        return False
+    return transparent or _encloses(scene, mesh, shown[0].transform)

@@ -70,7 +70,8 @@ def test_user_beats_stage_beats_default():
     stage = plain(options=options)
     plan = sw.make_plan(stage)
     assert (plan.size, plan.settings.spp, plan.settings.seed) == ((200, 100), 7, 3)
-    assert plan.settings.filter == "box" and plan.settings.filter_width == 1.0 and plan.on("indirect")
+    assert plan.settings.filter == "box" and plan.settings.filter_width == 1.0
+    assert plan.settings.integrator == "path"
     plan = sw.make_plan(stage, sw.Settings(width=50, spp=2, integrator="direct"))
     assert (plan.size, plan.settings.spp) == ((50, 25), 2) and not plan.on("indirect")
     assert sw.make_plan(plain()).size == (640, 640) and sw.make_plan(plain()).settings.spp == 16
@@ -125,6 +126,19 @@ def test_what_scratches_do_can_be_forced_off():
 def test_convex_bodies_cast_no_shadow(mesh, convex):
     assert is_convex(mesh) is convex
     assert not sw.make_plan(S.scene([mesh], [Material("/mat")], [S.dome()])).on("shadows")
+
+
+def test_paths_are_followed_only_where_a_surface_can_reflect_another():
+    path = sw.Settings(integrator="path")
+    ball, glass = [S.sphere(8, 16)], [Material("/mat", PreviewSurface(opacity=0.5))]
+    alone = S.scene(ball, [Material("/mat")], [S.dome()])
+    assert not sw.make_plan(alone, path).on("indirect")
+    from_within = S.scene(ball, [Material("/mat")], [S.dome()], instances=[S.place(0, 0)])
+    assert sw.make_plan(from_within, path).on("indirect") and sw.make_plan(from_within, path).on("shadows")
+    assert sw.make_plan(S.scene(ball, glass, [S.dome()]), path).on("indirect")
+    pair = [S.place(0, 0, (0, 0, -6)), S.place(0, 0, (3, 0, -6))]
+    assert sw.make_plan(S.scene(ball, [Material("/mat")], [S.dome()], instances=pair), path).on("indirect")
+    assert not sw.make_plan(S.scene([S.plane()], glass, [S.dome()]), path).on("indirect")
 
 
 def test_dents_and_second_bodies_cast_shadows():
