@@ -313,9 +313,7 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("--spp", type=int, help="samples a pixel of the rendered image in it")
     web = made.add_argument_group("in the browser")
     web.add_argument("--web", action="store_true", help="print links that show the stage in browsers; Ctrl+C ends it")
-    web.add_argument(
-        "--host", metavar="ADDRESS", help="to listen on [127.0.0.1, for this machine alone]"
-    )
+    web.add_argument("--host", metavar="ADDRESS", help="to listen on [127.0.0.1, for this machine alone]")
     web.add_argument("--port", type=int, help="to listen on [any that is free]")
     web.add_argument("--browse", action="store_true", help="open the first link in this machine's browser")
     web.add_argument("--save", metavar="FILE", help="USD layer that edits are saved to [NAME.look.usda beside STAGE]")

@@ -89,6 +89,7 @@ def kernel_key(scene: Scene, plan: EffectPlan) -> KernelKey:
         **_glint_fields(plan),
         grooves=on("grooves"),
         groove_crossings=on("grooves") and on("grooves.crossings"),
+        groove_handover=on("grooves") and on("grooves.handover"),
         groove_bounces=on("grooves") and on("grooves.interreflection"),
         responses=tuple(n for n, r in RESPONSES.items() if on(r.effect) and (distributions or r.base)),
         closed_form=bool(distributions) and on("lights.closedForm"),

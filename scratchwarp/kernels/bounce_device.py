@@ -66,6 +66,7 @@ def make_bounce(key: KernelKey, rotated, emission_at):
         step_y: wp.vec3,
         u_lobe: wp.vec2,
         u_more: wp.vec2,
+        resolved: int,
     ) -> Lobe:
         """Draw the scratches of one layer or the base, in proportion to what each is likely to reflect (Eq. 4)."""
         lobe = Lobe()
@@ -74,7 +75,7 @@ def make_bounce(key: KernelKey, rotated, emission_at):
         lobe.w_specular = 1.0
         if wp.static(key.scratches):
             if m.layers > 0:
-                laid = gather(g, scratches, m, s, frame, step_x, step_y, u_lobe[1], u_more[1])
+                laid = gather(g, scratches, m, s, frame, step_x, step_y, u_lobe[1], u_more[1], resolved)
                 lobe.w_specular = 1.0 - laid.covered
                 lobe.w_diffuse = 1.0 - laid.covered + laid.kept
                 if laid.chosen >= 0:
@@ -189,6 +190,7 @@ def make_bounce(key: KernelKey, rotated, emission_at):
         step_y: wp.vec3,
         u_lobe: wp.vec2,
         u_more: wp.vec2,
+        resolved: int,
     ) -> wp.vec3:
         """What specular reflection and scratches leave of light that goes straight through (all of it for cut-outs).
 
@@ -199,7 +201,7 @@ def make_bounce(key: KernelKey, rotated, emission_at):
             result = result - base_fresnel(base, wp.dot(s.ns, wo))
             if wp.static(key.scratches):
                 if m.layers > 0:
-                    laid = gather(g, scratches, m, s, frame, step_x, step_y, u_lobe[1], u_more[1])
+                    laid = gather(g, scratches, m, s, frame, step_x, step_y, u_lobe[1], u_more[1], resolved)
                     result = (1.0 - laid.covered + laid.kept) * result
         return result
 

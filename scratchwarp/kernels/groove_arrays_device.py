@@ -16,10 +16,12 @@ GROOVE_ROOM = wp.constant(64)  # pieces near a footprint
 @wp.struct
 class GrooveRecord:
     """One pattern, laid out in micrometres over a surface: ``scale`` micrometres a unit of u and of v; ``width``, the
-    mean of its grooves. The other fields are those of ``GrooveSet`` and ``Grid``."""
+    mean of its grooves; ``handover`` 1: only where they are near. The other fields are those of ``GrooveSet`` and of
+    ``Grid``."""
 
     scale: wp.vec2d
     width: wp.float64
+    handover: int
     bottom: wp.float64
     top: wp.float64
     skin: wp.float64
@@ -61,8 +63,8 @@ class GrooveSpot:
     """A footprint on a pattern.
 
     ``frame``: of the surface, in the world; ``turn``, ``mirror``: its x and y in the pattern, y mirrored where mirror
-    is -1; ``o``: towards the viewer, in the pattern; ``near``: 1 where grooves are to be laid out; ``ratio``: width of
-    the footprint in widths of a groove.
+    is -1; ``o``: towards the viewer, in the pattern; ``near``: 1 where grooves are to be laid out; ``smooth``:
+    roughness of facets, 0 for that of the surface.
     """
 
     grooves: GrooveSet
@@ -73,17 +75,18 @@ class GrooveSpot:
     mirror: wp.float64
     o: wp.vec3d
     near: int
-    ratio: float
+    smooth: float
 
 
 @wp.struct
 class FacetStuff:
     """What facets under a footprint are made of: the surface's ``base``, scaled lobes, x axis of its anisotropy in the
-    pattern; ``own`` and ``bases`` as in ``GrooveArrays``."""
+    pattern; ``own`` and ``bases`` as in ``GrooveArrays``, ``smooth`` as in ``GrooveSpot``."""
 
     base: Base
     w_diffuse: float
     w_specular: float
+    smooth: float
     x: wp.vec3
     own: wp.array(dtype=int)
     bases: wp.array(dtype=Base)

@@ -71,7 +71,7 @@ class _Joined:
         self.records: list[Any] = []
         self.count = self.corners = self.cells = self.listed = self.laid = 0
 
-    def add(self, pattern: Pattern, own: Array, scale: Array, width: float) -> int:
+    def add(self, pattern: Pattern, own: Array, scale: Array, width: float, handover: bool) -> int:
         """Number of a pattern; ``own``: the material of each of its paths."""
         table = pattern.table.copy()
         self.own.append(own.astype(np.int32))
@@ -87,7 +87,7 @@ class _Joined:
             setattr(r, name, getattr(pattern.grooves, name))
         for name in ("origin", "cell", "columns", "rows"):
             setattr(r, name, getattr(grid.data, name))
-        r.first = self.cells
+        r.first, r.handover = self.cells, int(handover)
         self.tables.append(table)
         self.vertices.append(vertices)
         self.starts.append(starts + self.listed)
@@ -193,4 +193,4 @@ def _pattern(
     if not len(pattern.table):
         return -1
     width = float(np.mean([path.width for path in paths]))
-    return joined.add(pattern, np.array(own), scale * np.array([1.0, hand]), width)
+    return joined.add(pattern, np.array(own), scale * np.array([1.0, hand]), width, groove.handover)

@@ -30,6 +30,7 @@ wp.set_module_options({"enable_backward": False})
 GRAZING = wp.constant(wp.float64(1e-9))
 LEVEL = wp.constant(wp.float64(1e-3))  # rays lower than this are followed as far as those
 SEED = wp.constant(wp.uint32(0x6A09E667))
+SMOOTH = wp.constant(0.003)  # roughness of facets that go over to tables, which take them for smooth
 
 
 @wp.struct
@@ -74,13 +75,16 @@ def near_ray(spot: GrooveSpot, p: wp.vec3d, d: wp.vec3d, ids: wp.array(dtype=int
 def facet_base(stuff: FacetStuff, path: int) -> Base:
     """What a facet of a path is made of, as rough as the surface."""
     result = stuff.base
+    if path >= 0 and stuff.smooth > 0.0:
+        result.alpha_x = stuff.smooth
+        result.alpha_y = stuff.smooth
     if path >= 0:
         own = stuff.own[path]
         if own >= 0:
             result = stuff.bases[own]
             if result.alpha_x < 0.0:
-                result.alpha_x = stuff.base.alpha_x
-                result.alpha_y = stuff.base.alpha_y
+                result.alpha_x = wp.where(stuff.smooth > 0.0, stuff.smooth, stuff.base.alpha_x)
+                result.alpha_y = wp.where(stuff.smooth > 0.0, stuff.smooth, stuff.base.alpha_y)
     return result
 
 
@@ -95,7 +99,7 @@ def stuff_radiance(stuff: FacetStuff, path: int, n: wp.vec3d, o: wp.vec3d, i: wp
 
 
 def make_grooves(key: KernelKey, transmittance):
-    """(spot, grooves): a footprint's place on a pattern, and what is seen there, compiled for ``key``."""
+    """(spot, grooves, is_near): a footprint's place on a pattern, and what is seen there, compiled for ``key``."""
     models = models_of(key)
     linked, arrives = make_arrives(key, transmittance)
     footprint_mean = make_footprint_mean(FacetStuff, stuff_radiance, key.groove_crossings)
@@ -109,6 +113,8 @@ def make_grooves(key: KernelKey, transmittance):
         number = arrays.of_face[s.face]
         if number >= 0:
             record = arrays.records[number]
+            if record.handover == 1:
+                spot.smooth = SMOOTH
             spot.grooves.pieces = arrays.pieces
             spot.grooves.vertices = arrays.vertices
             spot.grooves.bottom = record.bottom
@@ -147,7 +153,6 @@ def make_grooves(key: KernelKey, transmittance):
             spot.footprint.center = wp.vec2d(s.uv[0] * sx, s.uv[1] * sy)
             spot.footprint.a1 = equal * wp.vec2d(wp.float64(ax[0]) * sx, wp.float64(ax[1]) * sy)
             spot.footprint.a2 = equal * wp.vec2d(wp.float64(ay[0]) * sx, wp.float64(ay[1]) * sy)
-            spot.ratio = float((wp.length(spot.footprint.a1) + wp.length(spot.footprint.a2)) / record.width)
             if spot.o[2] > GRAZING:
                 ids = wp.zeros(shape=GROOVE_ROOM, dtype=int)
                 none = wp.vec2d(wp.float64(0.0), wp.float64(0.0))
@@ -156,6 +161,24 @@ def make_grooves(key: KernelKey, transmittance):
                 if found > 0 or spot.grooves.top > wp.float64(0.0):
                     spot.near = 1
         return spot
+
+    @wp.func
+    def is_near(arrays: GrooveArrays, g: Geometry, s: Surface, step_x: wp.vec3, step_y: wp.vec3) -> float:
+        """How often grooves are laid out under a footprint: always, or less and less where it is many of them wide."""
+        result = float(1.0)
+        number = arrays.of_face[s.face]
+        if number >= 0:
+            record = arrays.records[number]
+            if record.handover == 1:
+                ax = uv_motion(g, s, step_x)
+                ay = uv_motion(g, s, step_y)
+                sx = float(record.scale[0])
+                sy = float(record.scale[1])
+                wide = wp.length(wp.vec2(ax[0] * sx, ax[1] * sy)) + wp.length(wp.vec2(ay[0] * sx, ay[1] * sy))
+                ratio = 0.5641896 * wide / float(record.width)
+                t = wp.clamp((arrays.far - ratio) / (arrays.far - arrays.near), 0.0, 1.0)
+                result = t * t * (3.0 - 2.0 * t)
+        return result
 
     @wp.func
     def lit(spot: GrooveSpot, q: wp.vec3d, n: wp.vec3d, i: wp.vec3d) -> bool:
@@ -247,6 +270,7 @@ def make_grooves(key: KernelKey, transmittance):
         x = in_pattern(spot, lobe.frame.x)
         stuff.x = wp.vec3(float(x[0]), float(x[1]), float(x[2]))
         stuff.own = data.own
+        stuff.smooth = spot.smooth
         stuff.bases = data.bases
         more = pcg_hash(seed ^ SEED)
         disk = sample_concentric_disk(sobol_2d(index, pair, more))
@@ -315,4 +339,4 @@ def make_grooves(key: KernelKey, transmittance):
         result.out = out
         return result
 
-    return spot_at, grooves
+    return spot_at, grooves, is_near

@@ -50,8 +50,10 @@ def make_gather(key: KernelKey):
         step_y: wp.vec3,
         phase: float,
         u: float,
+        resolved: int,
     ) -> Layers:
-        """``step_x``, ``step_y``: edges of the footprint in the triangle's plane [m]; ``frame``: x the tangent."""
+        """``step_x``, ``step_y``: edges of the footprint in the triangle's plane [m]; ``frame``: x the tangent;
+        ``resolved`` 1: what may be laid out groove by groove is."""
         du = g.dpdu[s.face]
         dv = g.dpdv[s.face]
         outward = wp.where(s.outside == 1, 1.0, -1.0) * s.ng
@@ -106,6 +108,9 @@ def make_gather(key: KernelKey):
                         hit = drawn_curve(scratches.segments, layer, drawn)
             if wp.static(key.masks):
                 hit.alpha *= masked(scratches.maps, layer.maps, s, jx, jy, wp.frac(phase + 0.7548777 * float(k)))
+            if wp.static(key.groove_handover):
+                if resolved == 1 and layer.near == 1:
+                    hit.alpha = 0.0
             if hit.alpha > SMALLEST_COVERAGE:
                 total += hit.alpha
                 bare *= 1.0 - wp.min(hit.alpha, 1.0)

@@ -98,7 +98,7 @@ def pack_layer(plan: LayerPlan, curves: Any = None, maps: int = -1) -> LayerData
     d.mean, d.table, d.keeps_diffuse, d.weight = sub.coverage, plan.table, int(plan.keeps_diffuse), plan.weight
     d.diffuse = wp.vec3(*plan.diffuse)
     d.response = plan.response
-    d.maps = maps
+    d.maps, d.near = maps, int(plan.near)
     d.f0 = wp.vec3(*(plan.f0 or (0.0, 0.0, 0.0)))
     d.varied = int(layer.width_variation > 0.0 or plan.variation is not None)
     wavelength = layer.variation_length or (layer.length if sub.distribution == "spiral" else 0.0)

@@ -50,7 +50,7 @@ def make_kernel(key: KernelKey):
     transmittance = make_transmittance(key, opacity_at)
     direct, seen = make_direct(key, transmittance)
     glints = make_glints(key, transmittance) if key.glints else None
-    spot_at, grooves = make_grooves(key, transmittance) if key.grooves else (None, None)
+    spot_at, grooves, is_near = make_grooves(key, transmittance) if key.grooves else (None, None, None)
     choose, scatter, glow, pass_through, pass_probability = make_bounce(key, rotated, emission_at)
 
     @wp.kernel(module="unique", module_options={"enable_backward": False})
@@ -184,11 +184,16 @@ def make_kernel(key: KernelKey):
                     if wp.static(key.opacity):
                         if passes < wp.static(MOST_PASSES):
                             through = 1.0 - opacity_at(arrays, m, s.uv)
+                    resolved = int(1)  # grooves are laid out here
+                    if wp.static(key.groove_handover):
+                        laid_out = is_near(scratches.grooves, g, s, step_x, step_y)
+                        if sobol_2d(index, pair + 3, seed)[1] >= laid_out:
+                            resolved = 0
                     straight = wp.vec3(1.0, 1.0, 1.0)
                     if wp.static(key.opacity):
                         if through > 0.0:
                             straight = through * pass_through(
-                                g, scratches, m, base, s, frame, wo, step_x, step_y, u_lobe, u_more
+                                g, scratches, m, base, s, frame, wo, step_x, step_y, u_lobe, u_more, resolved
                             )
                             passing = pass_probability(m, through, straight)
                     if wp.static(key.opacity) and sobol_2d(index, pair + 3, seed)[0] < passing:
@@ -248,6 +253,7 @@ def make_kernel(key: KernelKey):
                                 step_y,
                                 u_lobe,
                                 u_more,
+                                resolved,
                             )
                             received = wp.vec4(0.0, 0.0, 0.0, 0.0)
                             out = Scatter()
@@ -255,7 +261,7 @@ def make_kernel(key: KernelKey):
                             if wp.static(key.grooves):
                                 if lobe.scratch == 0:
                                     spot = spot_at(scratches.grooves, g, s, frame, wo, step_x, step_y)
-                                    if spot.near == 1:
+                                    if spot.near == 1 and resolved == 1:
                                         grooved = 1
                                         lobe.scratch = 4
                                         there = grooves(

@@ -81,7 +81,8 @@ class Variation:
 class LayerPlan:
     """A sublayer to render, its first table or its response (neither: a diffuse scratch), whether the base's diffuse
     term shows through, and how its scratches differ (None: they are alike). ``f0``: reflectance at normal incidence
-    that the table was made with, where a textured base has its own at each point."""
+    that the table was made with, where a textured base has its own at each point. ``near``: laid out groove by groove
+    where it is near, and left out there."""
 
     sublayer: Any
     table: int
@@ -91,6 +92,7 @@ class LayerPlan:
     response: int = -1
     variation: Variation | None = None
     f0: tuple[float, float, float] | None = None
+    near: bool = False
 
     @property
     def lambert(self) -> bool:

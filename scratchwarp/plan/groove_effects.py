@@ -3,6 +3,8 @@
 from collections.abc import Callable
 from typing import Any
 
+_HANDOVER = "on: layers of model auto that the camera comes near to are laid out there"
+
 Answer = tuple[bool, str, tuple[str, ...]]
 
 
@@ -28,9 +30,15 @@ def _interreflection(f: Any) -> Answer:
     return bool(found), "light goes on from facet to facet" if found else "no facet that light could go on to", found
 
 
+def _handover(f: Any) -> Answer:
+    found = _found(f, lambda own: own.handover)
+    return bool(found), "statistical from afar, laid out near by" if found else _HANDOVER, found
+
+
 GROOVE_EFFECTS: dict[str, Callable[[Any], Answer]] = {
     "grooves": _grooves,
     "grooves.crossings": _crossings,
     "grooves.interreflection": _interreflection,
+    "grooves.handover": _handover,
 }
 """Effect -> its rule."""

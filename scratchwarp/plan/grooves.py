@@ -1,12 +1,14 @@
 """Which layers are laid out groove by groove, and what their facets are made of."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from ..scene import Layer, Material, Scene, ScratchSurface
+from ..scene import Layer, Material, Scene, ScratchSurface, Settings
+from .choice import LayerPlan
 from .profiles import cross_section
 
 ARCS = 8  # chords for each arc of a smooth cross-section
@@ -14,6 +16,7 @@ BOUNCES = 8
 LINES = 48  # over a footprint where grooves cross or end, shared by the samples of a pixel
 # Widths of a footprint in widths of a groove between which model auto goes over to tables.
 NEAR, FAR = 2.0, 6.0
+MOST = 20_000  # scratches on a surface that model auto lays out
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,13 +64,58 @@ def _own(layer: Layer) -> Any:
     )  # fmt: skip
 
 
+def _number(layer: Layer, scene: Scene, area: float) -> float:
+    """About how many scratches of a layer lie on ``area`` square metres."""
+    if layer.distribution == "curves":
+        return float(sum(len(scene.curves[c].counts) for c in layer.curves))
+    unit = 1e6 * math.sqrt(area) if layer.space == "surface" else 1.0
+    if layer.distribution in ("worley", "random"):
+        each = max(layer.length, layer.width) * layer.width
+        dense = layer.density * (1e-6 if layer.space == "surface" else 1.0)
+        return unit * unit * (dense or layer.coverage / max(each, 1e-300))
+    return unit / max(layer.pitch, 1e-300)
+
+
+def near_layers(scene: Scene, settings: Settings, size: tuple[int, int], number: int) -> list[Layer]:
+    """Layers of model auto of a material that the camera comes near enough to: a sample's footprint is less than
+    ``FAR`` of their widths wide somewhere, and they have ``MOST`` scratches at most on each surface."""
+    camera, found = scene.camera, []
+    left, right, *_ = camera.window(*size, scene.options.conform, scene.options.pixel_aspect)
+    pixel = (right - left) / size[0] / math.sqrt(settings.spp or 1)
+    for layer in scene.materials[number].layers:
+        wide = True
+        for instance in scene.instances if layer.model == "auto" and layer.width > 0.0 else ():
+            if number not in instance.materials:
+                continue
+            mesh = scene.meshes[instance.mesh]
+            corners = mesh.points[mesh.triangles] @ instance.transform[:3, :3].T + instance.transform[:3, 3]
+            if not len(corners):
+                continue
+            area = 0.5 * float(np.linalg.norm(np.cross(*np.moveaxis(np.diff(corners, axis=1), 1, 0)), axis=-1).sum())
+            eye = camera.transform[:3, 3]
+            low, high = corners.min((0, 1)), corners.max((0, 1))
+            away = 1.0
+            if camera.projection != "orthographic":
+                away = float(np.linalg.norm(np.maximum(np.maximum(low - eye, eye - high), 0.0)))
+            width = layer.width * (1.0 if layer.space == "surface" else 1e6 * math.sqrt(max(area, 0.0)))
+            wide = wide and _number(layer, scene, area) <= MOST
+            if wide and 1.128e6 * pixel * away < FAR * width:
+                found.append(layer)
+                break
+    return found
+
+
 def plan_grooves(
-    scene: Scene, wanted: Callable[[Material, Layer], bool], model: str | None = None
+    scene: Scene,
+    wanted: Callable[[Material, Layer], bool],
+    model: str | None = None,
+    near: Callable[[int], list[Layer]] = lambda number: [],
 ) -> tuple[GroovePlan | None, ...]:
     """For each material what of it is laid out groove by groove, None where nothing is.
 
-    ``wanted(material, layer)``: whether it may; ``model``: in place of every layer's own. Raises ValueError on a
-    profile that cannot be drawn.
+    ``wanted(material, layer)``: whether it may; ``model``: in place of every layer's own; ``near(number)``: layers of a
+    material of which none is wanted that are laid out where they are near. Raises ValueError on a profile that cannot
+    be drawn.
     """
     used = {m for i in scene.instances for m in i.materials}
     made: list[GroovePlan | None] = []
@@ -79,10 +127,26 @@ def plan_grooves(
                 profile = cross_section(layer.profile, layer)
                 section = np.array(profile.polyline(ARCS))
                 own.append(GrooveLayerPlan(layer, section, _own(layer)))
-        made.append(GroovePlan(tuple(own)) if own else None)
+        handover = not own and number in used
+        if handover:
+            own = [
+                GrooveLayerPlan(x, np.array(cross_section(x.profile, x).polyline(ARCS)), _own(x)) for x in near(number)
+            ]
+        made.append(GroovePlan(tuple(own), handover) if own else None)
     return tuple(made)
 
 
 def groove_layers(grooves: tuple[GroovePlan | None, ...]) -> list[GrooveLayerPlan]:
     """All layers that are laid out."""
     return [layer for own in grooves if own is not None for layer in own.layers]
+
+
+def mark_near(
+    layers: tuple[tuple[LayerPlan, ...], ...], grooves: tuple[GroovePlan | None, ...]
+) -> tuple[tuple[LayerPlan, ...], ...]:
+    """The sublayers, those marked that are laid out groove by groove where they are near."""
+    made = []
+    for own, groove in zip(layers, grooves, strict=True):
+        names = {p.layer.label for p in groove.layers} if groove is not None and groove.handover else set()
+        made.append(tuple(replace(p, near=True) if p.sublayer.layer.label in names else p for p in own))
+    return tuple(made)

@@ -10,7 +10,7 @@ from ..scene import Layer, Material, Scene, Settings
 from .choice import EffectChoice, EffectPlan, LayerPlan, ResponsePlan, TablePlan
 from .cost import shares
 from .effects import EFFECTS, Facts, sampled_lights
-from .grooves import laid_out, plan_grooves
+from .grooves import laid_out, mark_near, near_layers, plan_grooves
 from .knobs import turned_tables
 from .layers import plan_layers, reflector
 from .models import base_responses
@@ -57,7 +57,15 @@ def make_plan(scene: Scene, settings: Settings | None = None, earlier: EffectPla
         tables = turned_tables(tables, decided.knobs, summed)
         waves = plan_waves(scene, waved, reflector, decided.model, decided.knobs)
         warnings += complaints(waves)
-        grooves = plan_grooves(scene, grooved, decided.model)
+
+        def near(number: int) -> list[Layer]:
+            wanted = forced.get("grooves.handover", False) and forced.get("grooves", True)
+            if not wanted or decided.model not in (None, "auto") or scene.materials[number].wave is not None:
+                return []
+            return near_layers(scene, decided, size, number)
+
+        grooves = plan_grooves(scene, grooved, decided.model, near)
+        layers = mark_near(layers, grooves)
         used = sorted({m for instance in scene.instances for m in instance.materials})
         responses, bases = base_responses(scene, used, responses, lambda effect: forced.get(effect, True))
         far = ""

@@ -243,9 +243,7 @@ def base_pdf(b: Base, wo: wp.vec3, wi: wp.vec3, w_diffuse: float, w_specular: fl
 
 
 @wp.func
-def base_sample(
-    b: Base, wo: wp.vec3, u: wp.vec2, u_lobe: float, w_diffuse: float, w_specular: float
-) -> BaseSample:
+def base_sample(b: Base, wo: wp.vec3, u: wp.vec2, u_lobe: float, w_diffuse: float, w_specular: float) -> BaseSample:
     """Sample a direction in proportion to the lobes; ``u`` and ``u_lobe`` uniform in [0, 1)."""
     s = BaseSample()
     s.wi = wp.vec3(0.0, 0.0, 1.0)

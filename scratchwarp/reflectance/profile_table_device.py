@@ -13,6 +13,7 @@ import warp as wp
 
 wp.set_module_options({"enable_backward": False})
 
+
 @wp.struct
 class TableArrays:
     """All tables of a plan, M bins of phi each; rows of ``mirror`` are normalised to energy sum_i mirror w_i = 1."""

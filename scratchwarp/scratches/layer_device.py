@@ -42,6 +42,7 @@ class LayerData:
     response: int  # what it reflects by in place of a table, -1: nothing
     f0: wp.vec3  # F0 of the table, where a textured base has its own at each point; else 0
     maps: int  # masks and directions of the layer in ``kernels.maps_device``, -1: none
+    near: int  # 1: laid out groove by groove where it is near, and left out there
     varied: int  # 1: scratches differ from one another
     wave: float  # wavelengths of the variation along a scratch in a pattern unit; 0: none
 

@@ -29,9 +29,7 @@ def footprint_kernel(f: Footprints, method: int, rules: Rules, out: wp.array(dty
 
 
 @wp.kernel
-def coverage_kernel(
-    f: Footprints, width: wp.array(dtype=real), method: int, rules: Rules, out: wp.array(dtype=real)
-):
+def coverage_kernel(f: Footprints, width: wp.array(dtype=real), method: int, rules: Rules, out: wp.array(dtype=real)):
     """Area density of a scratch."""
     i = wp.tid()
     e = make_ellipse(f.a1[i], f.a2[i], f.angle[i])

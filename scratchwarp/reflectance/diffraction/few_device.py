@@ -122,9 +122,7 @@ def piece_nodes(a: real, b: real, n: int) -> vec4:
                 root = wp.sqrt(lean * lean + real(4.0) * variance)
                 z0 = HALF * (lean - root)
                 z1 = HALF * (lean + root)
-                r = vec4(
-                    wp.clamp(first + z0, a, b), mass * z1 / root, wp.clamp(first + z1, a, b), -mass * z0 / root
-                )
+                r = vec4(wp.clamp(first + z0, a, b), mass * z1 / root, wp.clamp(first + z1, a, b), -mass * z0 / root)
     return r
 
 

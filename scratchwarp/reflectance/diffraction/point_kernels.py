@@ -57,9 +57,7 @@ def coherent_kernel(
         total = vec2(base * mirror_amplitude(sigma[i], wavelength, omega_i, omega_o), ZERO)
         column = wp.min(i, scratches.shape[1] - 1)
         for m in range(scratches.shape[0]):
-            total -= scratch_amplitude(
-                scratches[m, column], outlines, wavelength, omega_i, omega_o, angle_dependent
-            )
+            total -= scratch_amplitude(scratches[m, column], outlines, wavelength, omega_i, omega_o, angle_dependent)
         out[i] = power(total)
 
 
@@ -82,7 +80,9 @@ def outline_integral_kernel(
     if i > 0:
         for j in range(_NODES):
             at = xi2 - step + step * rule_node(rules, _NODES, j)
-            total += rule_weight(rules, _NODES, j) * step * power(
-                outline_transform(outlines, first, count, width, depth, at, TWO)
+            total += (
+                rule_weight(rules, _NODES, j)
+                * step
+                * power(outline_transform(outlines, first, count, width, depth, at, TWO))
             )
     out[i] = vec2(total, power(outline_transform(outlines, first, count, width, depth, xi2, TWO)))

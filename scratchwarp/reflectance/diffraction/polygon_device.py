@@ -195,9 +195,7 @@ def polygon_marks(light: PolygonView, s: WaveScratch, first: real, last: real) -
 
 
 @wp.func
-def _cut_edge(
-    acc: SliceSum, lobe: Lobe, tables: LobeTables, rules: Rules, u: real, a: vec3, b: vec3
-) -> SliceSum:
+def _cut_edge(acc: SliceSum, lobe: Lobe, tables: LobeTables, rules: Rules, u: real, a: vec3, b: vec3) -> SliceSum:
     r = acc
     side_a = a[0] - u * wp.length(a)
     side_b = b[0] - u * wp.length(b)

@@ -105,9 +105,7 @@ def make_radiance(view: Any, breaks: Callable[..., Any], cut: Callable[..., Any]
         return slice_value(cut(light, lobe, tables, rules, u), lobe)
 
     @wp.func
-    def walk(
-        light: view, lobe: Lobe, tables: LobeTables, rules: Rules, p: Range, start: real, stop: real
-    ) -> real:
+    def walk(light: view, lobe: Lobe, tables: LobeTables, rules: Rules, p: Range, start: real, stop: real) -> real:
         """Integral of e^{-x^2} g from ``start``, near 0 or nearest to it, to ``stop``."""
         total = real(0.0)
         side = wp.where(stop > start, ONE, -ONE)
@@ -167,9 +165,7 @@ def make_radiance(view: Any, breaks: Callable[..., Any], cut: Callable[..., Any]
         return total
 
     @wp.func
-    def sliced(
-        light: view, lobe: Lobe, tables: LobeTables, rules: Rules, extent: Breaks, slices: int
-    ) -> real:
+    def sliced(light: view, lobe: Lobe, tables: LobeTables, rules: Rules, extent: Breaks, slices: int) -> real:
         """Integral of the Gaussian, or of |eta|^2, and g over x from corner to corner."""
         total = real(0.0)
         s = lobe.scratch
@@ -207,9 +203,7 @@ def make_radiance(view: Any, breaks: Callable[..., Any], cut: Callable[..., Any]
         return total / p.sharpness
 
     @wp.func
-    def radiance(
-        light: view, lobe: Lobe, tables: LobeTables, rules: Rules, method: int, slices: int
-    ) -> real:
+    def radiance(light: view, lobe: Lobe, tables: LobeTables, rules: Rules, method: int, slices: int) -> real:
         """Radiance [1] towards omega_o; 0 from below the horizon."""
         r = real(0.0)
         s = lobe.scratch

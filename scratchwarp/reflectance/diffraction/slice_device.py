@@ -72,9 +72,7 @@ class SliceSum:
 
 
 @wp.func
-def make_lobe(
-    s: WaveScratch, omega_o: vec3, wavelength: real, kind: int, table_first: int, table_count: int
-) -> Lobe:
+def make_lobe(s: WaveScratch, omega_o: vec3, wavelength: real, kind: int, table_first: int, table_count: int) -> Lobe:
     """The lobe of a scratch seen from ``omega_o`` (shading frame)."""
     r = Lobe()
     r.scratch = s

@@ -19,9 +19,7 @@ _REACH = 12.0  # um
 _COLUMNS, _ROWS = 768, 1024
 
 
-def wide_rgb(
-    width: Any, depth: Any, q0: Any, q1: Any, offset: Any = 0.0, coherence_radius: Any = 60.0
-) -> np.ndarray:
+def wide_rgb(width: Any, depth: Any, q0: Any, q1: Any, offset: Any = 0.0, coherence_radius: Any = 60.0) -> np.ndarray:
     """Colour of one scratch under white light that fills xi_2 from ``q0`` to ``q1`` on the line xi_1 = 0: linear
     Rec.709 ``[..., 3]`` of its radiance, the light's being 1 at all wavelengths; not clamped, illuminant E adapted to
     D65.
@@ -67,5 +65,3 @@ def wide_table() -> WideTable:
     table.values = device_array(values, vec3)
     table.limit = device_array(0.5 * np.pi * (seen @ weights), vec3)
     return table
-
-

@@ -75,9 +75,7 @@ def wide_integral(table: WideTable, reach: real, depth: real) -> vec3:
             y,
         )
     else:
-        limit = _cubic(
-            _limit(table, row - 1), _limit(table, row), _limit(table, row + 1), _limit(table, row + 2), y
-        )
+        limit = _cubic(_limit(table, row - 1), _limit(table, row), _limit(table, row + 1), _limit(table, row + 2), y)
         edge = _cubic(
             _value(table, row - 1, last),
             _value(table, row, last),
