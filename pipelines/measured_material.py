@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from scratchwarp.reflectance.stencils.model import Model
 
 SUFFIXES = (".usda", ".usdc", ".usd")
+STAGES = (".usda", ".usdc", ".usd", ".usdz")
 
 
 def author(model: "Model", path: Path | str, name: str | None = None, comment: str = "") -> Path:
@@ -157,6 +158,25 @@ def main(argv: Sequence[str] | None = None) -> int:
     psnr = measured.compare(brdf, stencils.unfolded(model))["psnr"]
     print(f"{path}: {len(model.modes)} modes, PSNR {psnr:.1f} dB")
     return 0
+
+
+def brdf_of(source: str, material: str | None = None) -> tuple[Any, list[str]]:
+    """(BRDF [288, 288, 3], what it stands for) of a measured file, or of a scratched material of a stage from far away.
+
+    ``material``: by path or name; None for the first with scratches. Raises ValueError or OSError naming the file.
+    """
+    import scratchwarp as sw
+    from scratchwarp.plan.far_field import tabulate
+    from scratchwarp.reflectance import measured
+
+    if Path(source).suffix.lower() not in STAGES:
+        return measured.load(source), []
+    scene = sw.read(source)
+    scratched = [i for i, one in enumerate(scene.materials) if one.layers]
+    if material is None and not scratched:
+        raise ValueError(f"{source}: no material has scratches; choose one by --material")
+    _, values, notes = tabulate(scene, scratched[0] if material is None else material)
+    return values, list(notes)
 
 
 if __name__ == "__main__":

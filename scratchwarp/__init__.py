@@ -35,6 +35,7 @@ _PUBLIC = {
     "optics": ("scratchwarp.optics", None),
     "profiles": ("scratchwarp.profiles", None),
     "scene": ("scratchwarp.scene", None),
+    "study": ("scratchwarp.study", None),
     "stencils": ("scratchwarp.reflectance.stencils", None),
 }
 

@@ -199,6 +199,28 @@ def _knob(text: str) -> tuple[str, "Value"]:
         raise UsageError(f"--knob: {error}") from None
 
 
+def study(args: argparse.Namespace) -> "tuple[tuple[str, ...] | None, float | None]":
+    """(knobs or None for all, budget in seconds or None); UsageError on a knob or a time that is none."""
+    from .plan.knobs import KNOBS
+
+    names = listed(args.knobs)
+    for name in names:
+        if name not in KNOBS:
+            raise UsageError(f"--knobs {name!r} is not one of {', '.join(KNOBS)}")
+    if args.repeats < 1:
+        raise UsageError(f"--repeats {args.repeats} is not 1 or more")
+    if not args.budget:
+        return names or None, None
+    unit = {"s": 1.0, "m": 60.0, "h": 3600.0}.get(args.budget[-1])
+    try:
+        seconds = float(args.budget[:-1] if unit else args.budget) * (unit or 1.0)
+    except ValueError:
+        seconds = 0.0
+    if not 0.0 < seconds < 1e9:
+        raise UsageError(f"--budget {args.budget!r} is no time: write 90s, 10m or 2h")
+    return names or None, seconds
+
+
 _EXAMPLES = {
     "": """scratchwarp demo out
   scratchwarp render ball.usda ball.exr -w 640 --spp 64
@@ -216,6 +238,8 @@ _EXAMPLES = {
     "  scratchwarp view ball.usda --web --port 8765\n"
     "  scratchwarp view ball.usda --profile hairlines\n  scratchwarp view quartic\n  scratchwarp view lobe\n"
     "  scratchwarp view cloth.bin --screenshot cloth.png",
+    "study": "scratchwarp study ball.usda ball_study --budget 10m\n"
+    "  scratchwarp study ball.usda out --knobs spp,tables.resolution,tables.rays -w 96 --repeats 5",
     "fit": "scratchwarp fit cloth.bin cloth.usda --report cloth\n  scratchwarp fit paint.binary paint.usda --modes 1\n"
     "  scratchwarp fit kettle.usda far.usda --material brass   # scratches seen from far away",
     "scratchmap": "scratchwarp scratchmap hairlines.png --direction 0 --spread 4 --density 900\n"
@@ -318,6 +342,15 @@ def parser() -> argparse.ArgumentParser:
     web.add_argument("--browse", action="store_true", help="open the first link in this machine's browser")
     web.add_argument("--save", metavar="FILE", help="USD layer that edits are saved to [NAME.look.usda beside STAGE]")
     web.add_argument("--sessionLayer", "--session", metavar="FILE", help="USD layer laid over the stage")
+
+    made = command("study", "measure what accuracy costs in time, and write a report of it", json_too=True)
+    add_stage(made)
+    made.add_argument("out", metavar="OUT_DIR", help="folder of the report; measurements in it are taken up again")
+    made.add_argument("--budget", metavar="TIME", help="90s, 10m or 2h: search settings of several knobs, too [none]")
+    made.add_argument("--knobs", metavar="NAMES", default="", help="with commas [all that act on the stage]")
+    made.add_argument("--repeats", type=int, default=3, metavar="N", help="rounds of all settings [3]")
+    add_settings(made)
+    made.set_defaults(imageWidth=160)
 
     made = command("fit", "fit highlight stencils to a measured BRDF, written as a material", json_too=True)
     made.add_argument("measured", metavar="MEASURED", help="UTIA .bin, MERL .binary, RGL .bsdf, or a USD stage")

@@ -31,7 +31,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         kept = getattr(args, "checkpoint", None)
         if kept and "#" not in kept and not Path(kept).exists():  # nothing was rendered yet
             kept = None
-        _say(f"interrupted; {f'{kept} is kept, add --resume to go on' if kept else 'no file was left half written'}")
+        says = f"{kept} is kept, add --resume to go on" if kept else "no file was left half written"
+        if getattr(args, "kept", None):
+            says = f"what was measured is kept in {args.kept}; the same command goes on"
+        _say(f"interrupted; {says}")
         return 130
     except BrokenPipeError:  # the reader, such as head, has seen enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -210,7 +213,9 @@ def fit(args: Command) -> int:
         raise UsageError(f"OUT {args.out!r} ends in none of {', '.join(measured_material.SUFFIXES)}")
     if args.modes is not None and not 1 <= args.modes <= 12:
         raise UsageError(f"--modes {args.modes} is not in [1, 12]")
-    brdf, notes = _measured(args)
+    if args.material is not None and Path(args.measured).suffix.lower() not in measured_material.STAGES:
+        raise UsageError("--material is of a USD stage")
+    brdf, notes = measured_material.brdf_of(args.measured, args.material)
     rivals = measured.RIVALS if args.report and not args.no_refine else ()
     with bar(args.quiet, Path(args.measured).name) as progress:
         found = fit_candidates.candidates(
@@ -233,24 +238,22 @@ def fit(args: Command) -> int:
     return 0
 
 
-def _measured(args: Command) -> tuple[Any, list[str]]:
-    """What ``fit`` is given: the BRDF of a file, or of a scratched material seen from far away."""
-    from .reflectance import measured
-
-    if Path(args.measured).suffix.lower() not in (".usda", ".usdc", ".usd", ".usdz"):
-        if args.material is not None:
-            raise UsageError("--material is of a USD stage")
-        return measured.load(args.measured), []
+def study(args: Command) -> int:
+    """Measure what accuracy costs on STAGE, and write a report of it."""
     import scratchwarp as sw
 
-    from .plan.far_field import tabulate
+    from .study.command import run
 
-    scene = sw.read(args.measured)
-    scratched = [i for i, material in enumerate(scene.materials) if material.layers]
-    if args.material is None and not scratched:
-        raise ValueError(f"{args.measured}: no material has scratches; choose one by --material")
-    _, values, notes = tabulate(scene, scratched[0] if args.material is None else args.material)
-    return values, list(notes)
+    names, budget = arguments.study(args)
+    scene = sw.read(args.stage, **arguments.reading(args))
+    _warn(scene.warnings, set(), args.quiet)
+    args.kept = args.out
+    written = run(scene, names, args.repeats, arguments.settings(args), budget, args.out, args.quiet)
+    if args.json:
+        print(written.json, flush=True)
+    elif not args.quiet:
+        print(written.text, flush=True)
+    return 0
 
 
 def scratchmap(args: Command) -> int:
@@ -374,4 +377,4 @@ def _plain(value: Any) -> Any:
     return value.tolist() if hasattr(value, "tolist") else str(value)
 
 
-COMMANDS = {run.__name__: run for run in (render, explain, simulate, view, fit, scratchmap, demo, cache)}
+COMMANDS = {run.__name__: run for run in (render, explain, simulate, view, study, fit, scratchmap, demo, cache)}

@@ -1,8 +1,21 @@
-"""Error against what is known: reports of fits to measured BRDFs. Sweeps of error against time are not here yet.
+"""What accuracy costs: sweeps of error against time, and reports of fits to measured BRDFs.
+
+``study.sweep(scene) -> Report``; ``report.pareto()``; ``report.write("out/")``.
 
 Files:
+    sweeping        renders a scene at many settings and compares with a reference
+    measurement     one rendering, and the file of all of them
+    measures        relative mean square error and FLIP
+    report          rows, the front, and files
+    chart, page     error against seconds as SVG, the report as HTML
     fit_candidates  a stencil model and its rivals, fitted to one measurement
     fit_metrics     how far each is off, by scikit-image where it is installed
     fit_pictures    BRDFs unfolded into pictures, slices as charts
     fit_report      all of it as a folder with an HTML page
 """
+
+from ..lazy import lazily
+
+_NAMES = {"Report": "report", "Row": "report", "sweep": "sweeping"}
+__all__ = ["Report", "Row", "sweep"]
+__getattr__, __dir__ = lazily(__name__, _NAMES)

@@ -1,0 +1,176 @@
+"""Report: rows of error against time, the front among them, and files to look at."""
+
+import csv
+import io
+import json
+import os
+import platform
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+import numpy as np
+
+from .. import __version__, image
+from ..plan.knobs import KNOBS
+from ..scene.knob import Value
+from ..whole import whole
+from .measurement import PARTS, Measurement, setting_name
+
+
+@dataclass(frozen=True)
+class Row:
+    """One setting over all its rounds.
+
+    Attributes:
+        name, knobs: what is turned away from the defaults; ``name`` "defaults" for nothing.
+        seconds: the median over rounds of its seconds over those of the defaults, times the median of the latter;
+            ``fastest``, ``slowest``: of the same. ``parts``: median seconds of each part, ``compile`` not counted.
+        error, least_error, most_error: relMSE against the reference, mean and range over rounds.
+        bias: relMSE against the knob's reference value with the same samples: what is left without noise.
+        flip: mean FLIP. rounds: renderings. front: nothing measured is both faster and closer.
+    """
+
+    name: str
+    knobs: Mapping[str, Value]
+    seconds: float
+    fastest: float
+    slowest: float
+    parts: Mapping[str, float]
+    error: float
+    least_error: float
+    most_error: float
+    bias: float | None
+    flip: float | None
+    rounds: int
+    front: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Report:
+    """What a sweep found.
+
+    Attributes:
+        rows: settings, the defaults first. about: the stage, size, threads, seeds, the reference, seconds.
+        reference: its image [h, w, 3], linear Rec.709. images: row name -> image of the first round.
+    """
+
+    rows: tuple[Row, ...]
+    about: Mapping[str, Any]
+    reference: np.ndarray
+    images: Mapping[str, np.ndarray] = field(default_factory=dict)
+
+    @staticmethod
+    def rows_of(measured: Sequence[Measurement]) -> tuple[Row, ...]:
+        """Rows of measurements, with the front marked."""
+        groups: dict[str, list[Measurement]] = {}
+        for one in measured:
+            groups.setdefault(setting_name(one.knobs), []).append(one)
+        base = median(one.base for one in measured) if measured else 0.0
+        rows = [_row(name, own, base) for name, own in groups.items()]
+        front = {id(row) for row in rows if not any(_beats(other, row) for other in rows)}
+        return tuple(Row(**{**vars(row), "front": id(row) in front}) for row in rows)
+
+    def pareto(self) -> tuple[Row, ...]:
+        """The rows that nothing measured beats in both time and error, fastest first."""
+        return tuple(sorted((row for row in self.rows if row.front), key=lambda row: row.seconds))
+
+    def knob_rows(self, name: str) -> tuple[Row, ...]:
+        """The rows of one knob turned alone, and the defaults at their place, from cheap to reference."""
+        default = self.about["defaults"].get(name)
+        found = {row.knobs[name]: row for row in self.rows if set(row.knobs) == {name}}
+        found |= {row.knobs.get(name, default): row for row in self.rows if not row.knobs}
+        values = sorted(found, key=lambda v: KNOBS[name].values.index(v) if v in KNOBS[name].values else int(v))
+        return tuple(found[value] for value in values)
+
+    def record(self) -> dict[str, Any]:
+        """Everything but the images, as what JSON can hold."""
+        rows = [{**asdict(row), "knobs": dict(row.knobs), "parts": dict(row.parts)} for row in self.rows]
+        knobs = {n: _described(n) for n in self.about["defaults"]}
+        return {"about": {**self.about, **machine()}, "knobs": knobs, "rows": rows}
+
+    def write(self, folder: str | Path) -> Path:
+        """Write report.html (one file that needs no other), report.json, report.csv and the images as PNG into
+        ``folder``; the path of the page. OSError where that cannot be done."""
+        from .page import page
+
+        target = Path(folder)
+        target.mkdir(parents=True, exist_ok=True)
+        for name, pixels in {"reference": self.reference, **self.images}.items():
+            image.write_layers({"color": pixels}, target / f"{file_name(name)}.png")
+        _text(target / "report.json", json.dumps(self.record(), indent=1, default=str) + "\n")
+        _text(target / "report.csv", _table(self.rows))
+        _text(target / "report.html", page(self))
+        return target / "report.html"
+
+
+def machine() -> dict[str, Any]:
+    """Hardware and versions."""
+    import warp
+
+    return {
+        "machine": f"{_processor()}, {os.cpu_count()} processors, {platform.system()} {platform.release()}",
+        "versions": f"scratchwarp {__version__}, Warp {warp.config.version}, NumPy {np.__version__}, "
+        f"Python {platform.python_version()}",
+    }
+
+
+def file_name(name: str) -> str:
+    """A row's name as that of a file."""
+    return "".join(c if c.isalnum() or c in "=.-" else "_" for c in name)
+
+
+def _processor() -> str:
+    info = Path("/proc/cpuinfo")
+    lines = info.read_text(encoding="utf-8", errors="replace").splitlines() if info.is_file() else []
+    names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
+    return names[0] if names else platform.processor() or platform.machine()
+
+
+def _row(name: str, own: Sequence[Measurement], base: float) -> Row:
+    ratios = [one.total / one.base if one.base > 0.0 else 1.0 for one in own]
+    errors = [one.error for one in own]
+    biases = [one.bias for one in own if one.bias is not None]
+    flips = [one.flip for one in own if one.flip is not None]
+    return Row(
+        name=name,
+        knobs=dict(own[0].knobs),
+        seconds=median(ratios) * base,
+        fastest=min(ratios) * base,
+        slowest=max(ratios) * base,
+        parts={part: median(one.seconds.get(part, 0.0) for one in own) for part in (*PARTS, "compile")},
+        error=float(np.mean(errors)),
+        least_error=min(errors),
+        most_error=max(errors),
+        bias=float(np.mean(biases)) if biases else None,
+        flip=float(np.mean(flips)) if flips else None,
+        rounds=len(own),
+    )
+
+
+def _beats(other: Row, row: Row) -> bool:
+    no_worse = other.seconds <= row.seconds and other.error <= row.error
+    return no_worse and (other.seconds < row.seconds or other.error < row.error)
+
+
+def _described(name: str) -> dict[str, Any]:
+    knob = KNOBS[name]
+    return {"error": knob.error, "source": knob.source, "values": knob.values, "reference": knob.reference}
+
+
+def _table(rows: Sequence[Row]) -> str:
+    head = ("name", "seconds", "fastest", "slowest", *PARTS, "compile", "error", "least_error", "most_error")
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow((*head, "bias", "flip", "rounds", "front"))
+    for row in rows:
+        values = {**vars(row), **row.parts}
+        writer.writerow([values[name] for name in (*head, "bias", "flip", "rounds", "front")])
+    return stream.getvalue()
+
+
+def _text(path: Path, text: str) -> None:
+    with whole(path) as draft:
+        draft.write_text(text, encoding="utf-8")

@@ -1,0 +1,116 @@
+"""Sweeps of error against time, on a ball of a few pixels."""
+
+import csv
+import json
+import re
+
+import numpy as np
+import pytest
+
+import scratchwarp as sw
+from scratchwarp.study.measurement import Measurement, Notebook
+from scratchwarp.study.measures import flip, rel_mse
+from scratchwarp.study.report import Report
+
+from ..render import scenes as S
+
+SETTINGS = sw.Settings(
+    width=12, height=12, spp=4, filter="box", tile=16, effects=S.EVERYTHING, knobs={"tables.resolution": 32}
+)
+LADDERS = {"spp": (1, 4, 16), "tables.bounces": (1, 3, 2000)}
+
+
+def world():
+    return S.scene([S.sphere(8, 16)], [S.scratched(depth=75.0)], [S.dome()])
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("study")
+    report = sw.study.sweep(world(), LADDERS, repeats=2, settings=SETTINGS, folder=folder)
+    report.write(folder)
+    return report, folder
+
+
+def test_every_setting_is_rendered_in_every_round(done):
+    report, _ = done
+    assert [row.name for row in report.rows] == ["defaults", "spp=1", "spp=16", "tables.bounces=1", "tables.bounces=3"]
+    assert all(row.rounds == 2 and row.seconds > 0.0 and row.fastest <= row.slowest for row in report.rows)
+    assert report.about["seeds"] == [0, 1]
+    assert report.about["reference"]["tables.bounces"] == 2000 and report.about["reference"]["spp"] == 256
+
+
+def test_errors_fall_towards_the_reference(done):
+    """Noise of independent samples falls as 1 / spp; half of that and more is asked of four times as many."""
+    report, _ = done
+    spp = [row.error for row in report.knob_rows("spp")]
+    assert spp[1] < 0.5 * spp[0] and spp[2] < 0.5 * spp[1]
+    bias = [row.bias for row in report.knob_rows("tables.bounces") if row.bias is not None]
+    assert len(bias) == 2 and bias[0] > bias[1] > 0.0
+
+
+def test_the_front_is_what_nothing_beats(done):
+    front = done[0].pareto()
+    assert front and all(a.seconds <= b.seconds and a.error >= b.error for a, b in zip(front, front[1:], strict=False))
+
+
+def test_files_say_the_same_and_need_no_network(done):
+    report, folder = done
+    page = (folder / "report.html").read_text()
+    assert not re.search(r"""(src|href)=["'](?!data:)""", page) and "http" not in page.replace("http://www.w3.org", "")
+    for text in ("<svg", "data:image/png;base64,", "spp=16", "Seeds", "Raymond", "processors"):
+        assert text in page
+    rows = json.loads((folder / "report.json").read_text())["rows"]
+    assert [row["error"] for row in rows] == [row.error for row in report.rows]
+    with (folder / "report.csv").open() as stream:
+        assert [row["name"] for row in csv.DictReader(stream)] == [row.name for row in report.rows]
+    assert {p.name for p in folder.glob("*.png")} >= {"reference.png", "defaults.png", "spp=16.png"}
+
+
+def test_an_interrupted_study_goes_on(done, tmp_path, monkeypatch):
+    _, folder = done
+    lines = (folder / "measurements.jsonl").read_text().splitlines()
+    (tmp_path / "measurements.jsonl").write_text("\n".join([*lines[:-1], lines[-1][:20]]))
+    reference = next(folder.glob("reference-*.npy"))
+    (tmp_path / reference.name).write_bytes(reference.read_bytes())
+    measured = []
+    add = Notebook.add
+    monkeypatch.setattr(Notebook, "add", lambda self, row: (measured.append(row), add(self, row)))
+    again = sw.study.sweep(world(), LADDERS, repeats=2, settings=SETTINGS, folder=tmp_path)
+    assert [(dict(row.knobs), row.repeat) for row in measured] == [({"tables.bounces": 3}, 1)]
+    assert [row.error for row in again.rows] == [row.error for row in done[0].rows]
+
+
+def test_the_joint_search_turns_several(tmp_path):
+    report = sw.study.sweep(world(), {"spp": (1, 4), "tables.bounces": (1, 2000)}, {"spp": 8}, 1, SETTINGS, budget=3.0)
+    assert {"spp": 1, "tables.bounces": 1} in [dict(row.knobs) for row in report.rows]
+
+
+@pytest.mark.parametrize(
+    ("knobs", "repeats", "says"),
+    [(("glitter",), 1, "'glitter'; the knobs are"), ({"spp": (0,)}, 1, "spp is 0"), (("spp",), 0, "repeats")],
+)
+def test_what_cannot_be_is_said(knobs, repeats, says):
+    with pytest.raises(ValueError, match=says):
+        sw.study.sweep(world(), knobs, repeats=repeats, settings=SETTINGS)
+
+
+def test_measures():
+    rng = np.random.default_rng(0)
+    reference = rng.uniform(0.2, 1.0, (8, 8, 3))
+    off = reference * (1.0 + 0.1 * rng.choice([-1.0, 1.0], (8, 8, 1)))
+    # a grey image off by a tenth everywhere: 0.01 r^2 / (r^2 + 0.01 m^2)
+    grey = np.full((8, 8, 3), 0.5)
+    assert rel_mse(1.1 * grey, grey) == pytest.approx(0.01 / 1.01)
+    assert rel_mse(7 * off, 7 * reference) == pytest.approx(rel_mse(off, reference))
+    assert rel_mse(grey, 0.0 * grey) == 0.0
+    assert flip(reference, reference) in (0.0, None)
+
+
+def test_a_slow_moment_of_the_machine_does_not_count():
+    """Everything in the second round took five times as long: seconds are those of the median round all the same."""
+    rows = [Measurement({}, n, {"trace": t}, t, 0.1) for n, t in enumerate((1.0, 5.0, 1.0))]
+    rows += [Measurement({"spp": 64}, n, {"trace": 2 * t}, t, 0.01) for n, t in enumerate((1.0, 5.0, 1.0))]
+    base, finer = Report.rows_of(rows)
+    assert (base.seconds, finer.seconds, finer.slowest) == (1.0, 2.0, 2.0)
+    assert base.front and finer.front
