@@ -15,6 +15,7 @@ from .color import color
 from .reading import Reading
 
 _WHITE_KELVIN = 6500.0
+_MOST = 1.0e16  # images hold squares of radiances in float32
 
 
 def radiance(reading: Reading, prim: Usd.Prim, size_factor: float) -> np.ndarray:
@@ -31,7 +32,12 @@ def radiance(reading: Reading, prim: Usd.Prim, size_factor: float) -> np.ndarray
     tint = light_color(reading, prim, "inputs:color", (1.0, 1.0, 1.0))
     if reading.value(prim, "inputs:enableColorTemperature", False):
         tint = tint * temperature_rgb(reading.number(prim, "inputs:colorTemperature", _WHITE_KELVIN))
-    return scale * tint
+    emitted = scale * tint
+    largest = float(np.abs(emitted).max())
+    if largest > _MOST:
+        reading.warn(prim.GetPath(), f"its radiance is {largest:.3g}, more than images hold; {_MOST:g} is used")
+        emitted = emitted * (_MOST / largest)
+    return emitted
 
 
 def light_color(reading: Reading, prim: Usd.Prim, name: str, otherwise: tuple[float, float, float]) -> np.ndarray:

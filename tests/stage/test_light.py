@@ -6,6 +6,7 @@ from pxr import UsdLux
 from scipy.special import ellipe
 
 from scratchwarp import scene as records
+from scratchwarp import stage
 from scratchwarp.scene import StageError
 from scratchwarp.stage.light import temperature_rgb
 from scratchwarp.stage.light_far import distant_size_factor
@@ -36,6 +37,14 @@ def test_intensity_exposure_and_colour_multiply(read):
         "float inputs:intensity = 3\nfloat inputs:exposure = 2\ncolor3f inputs:color = (1, 0.5, 0.25)",
     )
     np.testing.assert_allclose(got.radiance, [12, 6, 3])
+
+
+def test_radiances_beyond_what_images_hold_are_held(write, said):
+    """Their squares, for the variance, would overflow."""
+    body = "color3f inputs:color = (1, 0.5, 0)\nfloat inputs:exposure = 90"
+    scene = stage.read(write(f'def DomeLight "d" {{\n{body}\n}}'))
+    np.testing.assert_allclose(scene.lights[0].radiance, (1e16, 5e15, 0), rtol=1e-6)
+    said(scene, "/d", "radiance is 1.24e+27", "1e+16")
 
 
 def test_colour_temperature_is_white_at_6500_and_otherwise_the_blackbody(read):
