@@ -3,6 +3,7 @@
 Files:
     author                    puts presets (folder presets) and attributes on an asset, in a layer over it: looks reads
                               them, put_on writes them
+    preset_gallery            writes a stage and a picture of each preset
     bake                      keeps simulated tables beside a stage
     compare, contact_sheet    show stages and images beside one another; pictures renders and arranges them
     publish                   makes an asset folder: asset_folder lays it out, gather copies what it needs

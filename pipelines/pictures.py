@@ -69,7 +69,7 @@ def grid(pictures: Sequence[Array], columns: int = 0, gap: int = 4) -> Array:
     """Pictures in rows, each in a cell as large as the largest, float32 [h, w, 3]; 0 columns: as square as it gets."""
     import numpy as np
 
-    columns = columns or int(np.ceil(np.sqrt(len(pictures))))
+    columns = min(columns or int(np.ceil(np.sqrt(len(pictures)))), len(pictures))
     high, wide = (max(p.shape[axis] for p in pictures) for axis in (0, 1))
     rows = -(-len(pictures) // columns)
     sheet = np.full((rows * (high + gap) - gap, columns * (wide + gap) - gap, 3), 0.18, np.float32)
