@@ -163,7 +163,12 @@ def test_explain(renderer, capsys):
     assert effects == {"shadows": {"enabled": False, "reason": "nothing can occlude", "prims": ["/World/Ball"]}}
 
 
-@pytest.mark.parametrize("command", ["render", "explain", "simulate", "validate", "view", "demo", "cache"])
+PIPELINES = ["author", "bake", "compare", "contact-sheet", "publish", "turntable", "zoom"]
+
+
+@pytest.mark.parametrize(
+    "command", ["render", "explain", "simulate", "validate", "view", "demo", "cache", *PIPELINES]
+)
 def test_help_has_examples(command, capsys):
     assert status(command, "--help") == 0
     assert f"examples:\n  scratchwarp {command}" in capsys.readouterr().out
