@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import scratchwarp as sw
+from scratchwarp.kernels.assemble import kernel_key
 from scratchwarp.plan.grooves import FAR, NEAR
 from scratchwarp.scene import Camera, DistantLight, Profile
 
@@ -64,3 +65,18 @@ def test_far_away_nothing_of_it_is_compiled():
     assert not sw.make_plan(world, sw.Settings(**asked)).on("grooves")
     far = replace(world, camera=replace(world.camera, horizontal_aperture=0.02, vertical_aperture=0.02))
     assert not sw.make_plan(far, sw.Settings(effects=near, **asked)).grooves[0]
+
+
+def test_only_what_a_pattern_needs_is_compiled():
+    """Parallel lines: no code for crossings; flat facets: none for bounces; forced off or absent: none at all."""
+
+    def key(crossing, effects=None, **fields):
+        world = sheets.world(crossing, sheets.LAMBERT, 1.0, 0.0, **fields)
+        return kernel_key(world, sw.make_plan(world, sheets.settings(8, 1, effects)))
+
+    parallel, crossed = key(False), key(True)
+    assert parallel.grooves and parallel.groove_bounces and not parallel.groove_crossings
+    assert crossed.groove_crossings and not crossed.groove_handover
+    assert not key(False, depth=0.0).groove_bounces
+    for none in (key(True, model="table"), key(True, {"grooves": False})):
+        assert not (none.grooves or none.groove_crossings or none.groove_bounces or none.groove_handover)
