@@ -37,7 +37,7 @@ def add_settings(parser: argparse.ArgumentParser) -> None:
     group.add_argument("--spp", type=int, help="samples a pixel [16]")
     group.add_argument("--seed", type=int, help="of every random choice [0]")
     group.add_argument("--quality", help="draft, preview, final or reference")
-    group.add_argument("--maxError", type=float, help="of the albedo of scratches [0.01]")
+    group.add_argument("--maxError", type=float, help="double the samples until relMSE is estimated below this")
     group.add_argument("--integrator", help="direct or path")
     group.add_argument("--maxDepth", type=int, help="surfaces that a path may meet")
     group.add_argument("--coneTaps", type=int, help="look-ups into a dome's image along the cone of a scratch [16]")

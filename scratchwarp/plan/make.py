@@ -101,8 +101,6 @@ def make_plan(scene: Scene, settings: Settings | None = None, earlier: EffectPla
         for light in scene.lights
         if light.shadow_linked is not None
     )
-    if decided.max_error is not None:
-        warnings += (f"max_error {decided.max_error:g} chooses tables, not samples ({decided.spp}), in this version",)
     x0, x1, y0, y1 = window
     kinds = [(t.resolution, None if t.fresnel is None else t.theta_model) for t in tables]
     megabytes = 1e-6 * sum(table_bytes(bins, model, summed) for bins, model in kinds)
@@ -117,6 +115,8 @@ def make_plan(scene: Scene, settings: Settings | None = None, earlier: EffectPla
     }
     if far:
         numbers["stencils"] = far
+    if decided.max_error is not None:
+        numbers["error"] = f"samples double from {decided.spp} until relMSE is estimated below {decided.max_error:g}"
     if decided.knobs:
         numbers["knobs"] = ", ".join(f"{name}={value}" for name, value in decided.knobs.items())
     if decided.model is not None:

@@ -8,6 +8,7 @@ Files:
     inspect     what made a pixel
     film        Film and its AOVs
     develop     sums -> AOVs and header
+    target      error estimated from samples, and passes until it is small enough
     checkpoint  finished tiles on disk
     baked       tables simulated beforehand, beside the stage
     progress    the progress bar

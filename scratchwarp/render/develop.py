@@ -38,6 +38,7 @@ def aovs(sums: Mapping[str, np.ndarray], scene: Scene, samples: int) -> dict[str
     luminance += np.float32(0.0722) * color[..., 2]
     spread = np.maximum(sums["square"] / good - luminance**2, 0.0)
     position = (over_hits("position").astype(np.float64) + scene.origin).astype(np.float32)
+    variance = (spread / np.maximum(good - 1.0, 1.0)).astype(np.float32)
     return {
         "color": color,
         "alpha": np.clip(sums["alpha"] / np.float32(samples), 0.0, 1.0).astype(np.float32),
@@ -49,7 +50,8 @@ def aovs(sums: Mapping[str, np.ndarray], scene: Scene, samples: int) -> dict[str
         "base": base,
         "scratches": scratches,
         "emission": (color - base - scratches).astype(np.float32),
-        "variance": (spread / np.maximum(good - 1.0, 1.0)).astype(np.float32),
+        "variance": variance,
+        "error": np.sqrt(variance),
     }
 
 

@@ -20,6 +20,7 @@ from .baked import Baked, Oven
 from .film import Film
 from .launch import SAMPLES_A_LAUNCH, SUMS, film_arrays, launcher, loaded
 from .progress import Progress, silent
+from .target import noted, says, until
 from .tiles import Tile, run, tiles
 
 # Seconds between checkpoints.
@@ -100,6 +101,9 @@ def render(
         resume: go on from ``checkpoint`` when it exists; the image has the same bits as one rendered at once.
         device: Warp device.
 
+    With ``max_error``, the samples are doubled until the error estimated from them is below it (see ``target``), and
+    stats say what it came to.
+
     The image does not depend on ``threads`` or ``tile``. Raises ValueError on a checkpoint of another render.
     """
     progress = progress or silent
@@ -134,23 +138,25 @@ def render(
                 view[tile.y : tile.y + tile.height, tile.x : tile.x + tile.width] = empty[name]
     position = {tile: i for i, tile in enumerate(jobs)}
     state = {"done": sum(t.width * t.height for t in jobs if finished[position[t]]) * spp, "launches": 0}
+    state |= {"first": 0, "count": spp}
     last = [time.perf_counter()]
 
     def worker() -> Callable[[Tile], None]:
         launch = launcher(kernel, built, plan, film, device)
 
         def work(tile: Tile) -> None:
-            for first in range(0, spp, SAMPLES_A_LAUNCH):
-                launch(tile, first, min(SAMPLES_A_LAUNCH, spp - first))
+            start, count = state["first"], state["count"]
+            for first in range(start, start + count, SAMPLES_A_LAUNCH):
+                launch(tile, first, min(SAMPLES_A_LAUNCH, start + count - first))
 
         return work
 
     def done(tile: Tile) -> None:
         finished[position[tile]] = True
-        state["done"] += tile.width * tile.height * spp
-        state["launches"] += -(-spp // SAMPLES_A_LAUNCH)
-        progress(state["done"], total, "trace")
-        if checkpoint and time.perf_counter() - last[0] > CHECKPOINT_EVERY:
+        state["done"] += tile.width * tile.height * state["count"]
+        state["launches"] += -(-state["count"] // SAMPLES_A_LAUNCH)
+        progress(state["done"], width * height * (state["first"] + state["count"]), "trace")
+        if state["first"] == 0 and checkpoint and time.perf_counter() - last[0] > CHECKPOINT_EVERY:
             checkpoints.save(checkpoint, key, finished, views)
             last[0] = time.perf_counter()
 
@@ -164,14 +170,30 @@ def render(
         raise
     if not on_cpu:
         wp.synchronize_device(device)
+    limit = settings.max_error
+    if checkpoint and limit is not None:
+        checkpoints.save(checkpoint, key, finished, views)  # passes to the target begin here, whatever stops them
+
+    def sums_now() -> dict[str, Any]:
+        return {name: getattr(film, name).numpy() for name in SUMS}
+
+    def more(first: int, count: int) -> None:
+        state["first"], state["count"] = first, count
+        run(jobs, [worker() for _ in range(max(1, min(threads if on_cpu else 1, len(jobs))))], done)
+        if not on_cpu:
+            wp.synchronize_device(device)
+
+    samples, error = until(limit, spp, sums_now, more)
+    total = width * height * samples
     if checkpoint:
         Path(checkpoint).unlink(missing_ok=True)
     traced = time.perf_counter()
 
-    sums = {name: getattr(film, name).numpy() for name in SUMS}
-    images = develop.aovs(sums, scene, spp)
+    sums = sums_now()
+    images = develop.aovs(sums, scene, samples)
     invalid = int(sums["invalid"].sum())
     warnings = built.warnings + plan.warnings + (tuple(bake.warnings) if bake else ())
+    warnings += says(limit, samples, error, traced - compiled)
     if invalid:
         warnings += (f"{invalid} of {total} samples were not finite and were left out",)
     stats: dict[str, Any] = {
@@ -187,9 +209,12 @@ def render(
         "kernels_launched": state["launches"],
         "tables_simulated": tables_simulated,
         "invalid_samples": invalid,
+        "error": error,
+        "halving": traced - compiled,
         **built.numbers,
     }
     header = develop.metadata(scene, plan, key, traced - clock, time.process_time() - cpu)
+    header |= {"scratchwarp:spp": samples, **noted(error)}
     return Film(images, stats, header, plan.size, plan.window, warnings)
 
 

@@ -21,6 +21,7 @@ from .inspect import PixelReport, inspect
 from .launch import SAMPLES_A_LAUNCH, SUMS, film_arrays, launcher, loaded
 from .renderer import render_digest, simulate_table
 from .steps import Step, steps
+from .target import noted, remaining
 from .tiles import Tile, run
 
 # Tables kept besides those in use: a slider that comes back to where it was finds them.
@@ -229,7 +230,10 @@ class Session:
         # the hash of a large scene takes longer than a step: only the finished image carries it
         key = render_digest(self.scene, step.plan, self._built) if self.finished else ""
         header = develop.metadata(self.scene, step.plan, key, self._wall, self._cpu)
-        return Film(images, stats, header | {"scratchwarp:spp": samples}, step.plan.size, step.plan.window, warnings)
+        header |= {"scratchwarp:spp": samples}
+        if self.finished:
+            header |= noted(remaining(sums, samples))
+        return Film(images, stats, header, step.plan.size, step.plan.window, warnings)
 
 
 def _described(scene: Scene, plan: EffectPlan, built: Assembled) -> str:

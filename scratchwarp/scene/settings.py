@@ -24,7 +24,8 @@ class Settings:
         threads: worker threads [all cores]; the image does not depend on it.
         quality: draft, preview, final or reference, which turns all knobs that are not turned otherwise: 4, 16, 128 or
             1024 samples and tables, look-ups and depths of paths to go with them.
-        max_error: largest error of the albedo of scratches by their tables' theta model [0.01].
+        max_error: samples are doubled until the relative mean square error that they leave is estimated below this [no
+            target]; also the largest error of the albedo of scratches by their tables' theta model [0.01].
         integrator: direct or path; max_depth: surfaces that a path may meet.
         crop: (xmin, xmax, ymin, ymax) in [0, 1], from the top left; only that part is rendered.
         tile: edge of a square tile in pixels.

@@ -89,8 +89,9 @@ def film(scene: Scene, size: int, spp: int, closed: bool, seed: int = 0) -> tupl
     """(seconds of tracing, image)."""
     effects = {"lights.closedForm": closed}
     settings = sw.Settings(
-        width=size, height=size, spp=spp, filter="box", filter_width=1e-4, seed=seed, effects=effects, max_error=0.005
-    )
+        width=size, height=size, spp=spp, filter="box", filter_width=1e-4, seed=seed, effects=effects,
+        knobs={"tables.theta": "table"},
+    )  # fmt: skip
     made = sw.render(scene, sw.make_plan(scene, settings))
     return made.stats["trace"], made["color"].astype(float)
 
