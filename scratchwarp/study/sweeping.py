@@ -136,6 +136,7 @@ class _Study:
 
     def _rendered(self, knobs: Setting, seed: int, progress: Progress = silent) -> tuple[np.ndarray, dict[str, float]]:
         plan: EffectPlan = make_plan(self.scene, self._turned(knobs, seed))
+        plan = replace(plan, settings=replace(plan.settings, max_error=None))  # tables are chosen; samples are given
         film = render(self.scene, plan, progress=progress)
         return film["color"], {part: float(film.stats[part]) for part in (*PARTS, "compile")}
 
@@ -147,8 +148,8 @@ class _Study:
             return
         self.reference, _ = self._rendered(self.best, REFERENCE_SEED, progress)
         if file is not None:
-            with whole(file) as draft:
-                np.save(draft.open("wb"), self.reference)
+            with whole(file) as draft, draft.open("wb") as stream:
+                np.save(stream, self.reference)
 
     def seed(self, repeat: int) -> int:
         """The seed of a round."""
