@@ -70,7 +70,7 @@ def launcher(
     window: Any = Window()
     window.x0, window.y0, window.seed = plan.window[0], plan.window[2], settings.seed or 0
     window.filter_width, window.max_depth = settings.filter_width, settings.max_depth
-    if settings.integrator == "direct":
+    if settings.integrator == "direct" or not plan.on("indirect"):
         window.max_depth = 1
     command = wp.launch(
         kernel, dim=1, inputs=[window, *built.inputs, film], device=device, record_cmd=True, record_tape=False
