@@ -11,6 +11,7 @@ from .. import lights
 from ..lights.light_device import Light
 from ..plan import EffectPlan
 from ..plan.choice import LayerPlan
+from ..plan.knobs import turned, value
 from ..reflectance import profile_table
 from ..reflectance.responses import RESPONSES
 from ..reflectance.responses.pack import pack as pack_responses
@@ -19,6 +20,7 @@ from ..scene import MeshLight, Scene
 from ..scene.digest import digest
 from ..scene.light import Light as LightRecord
 from ..scratches import KINDS, curves
+from ..scratches.knobs import FOOTPRINTS
 from . import geometry, glints, grooves, maps, material
 from .camera_device import CameraData
 from .key import KernelKey
@@ -136,7 +138,8 @@ def camera_data(scene: Scene, plan: EffectPlan) -> CameraData:
     c.focus_distance, c.exposure = camera.focus_distance, camera.exposure
     assert plan.settings.spp is not None
     # samples share the pixel: each stands for an area of 1 / spp of it
-    c.footprint = 1.0 / np.sqrt(plan.settings.spp)
+    c.footprint = FOOTPRINTS[str(value(plan.settings.knobs, "scratches.coverageFilter"))]
+    c.footprint = c.footprint or 1.0 / np.sqrt(plan.settings.spp)
     return c
 
 
@@ -239,9 +242,10 @@ def assemble(
         lambda: glints.pack(scene, plan, key, shape, device),
     )
     scratch_set.glints = sparkle.arrays
+    groove_knobs = sorted(turned(plan.settings.knobs, "groove").items())
     cut = parts.part(
         "grooves",
-        (digest(scene.materials, key, plan.settings.spp), scene.curves, scene.meshes, placed) if key.grooves else (),
+        (digest(scene.materials, key, plan.settings.spp, groove_knobs), scene.curves, scene.meshes, placed) if key.grooves else (),
         lambda: grooves.pack(scene, plan, key, shape, device),
     )
     scratch_set.grooves = cut.arrays

@@ -7,7 +7,8 @@ import numpy as np
 import warp as wp
 
 from ..plan import EffectPlan
-from ..plan.grooves import BOUNCES, FAR, LINES, NEAR, GrooveLayerPlan, GroovePlan
+from ..plan.grooves import FAR, NEAR, GrooveLayerPlan, GroovePlan
+from ..plan.knobs import value
 from ..plan.layers import conductor_index
 from ..reflectance.base_device import CONDUCTOR, DIELECTRIC, SCHLICK, Base
 from ..reflectance.grooves import Pattern
@@ -161,8 +162,10 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
     arrays.of_face = wp.array(of_face, dtype=int, device=device)
     memory = joined.pack(arrays, device) if joined.records else 0
     arrays.bases = wp.array(bases or [Base()], dtype=Base, device=device)
-    arrays.slices = max(4, -(-LINES // (plan.settings.spp or 1)))
-    arrays.bounces, arrays.near, arrays.far = BOUNCES, NEAR, FAR
+    knobs = plan.settings.knobs
+    lines = int(value(knobs, "grooves.lines"))
+    arrays.slices = max(min(4, lines), -(-lines // (plan.settings.spp or 1)))
+    arrays.bounces, arrays.near, arrays.far = int(value(knobs, "grooves.bounces")), NEAR, FAR
     return PackedGrooves(arrays, joined.count, memory)
 
 

@@ -12,8 +12,6 @@ from .choice import LayerPlan
 from .profiles import cross_section
 
 ARCS = 8  # chords for each arc of a smooth cross-section
-BOUNCES = 8
-LINES = 48  # over a footprint where grooves cross or end, shared by the samples of a pixel
 # Widths of a footprint in widths of a groove between which model auto goes over to tables.
 NEAR, FAR = 2.0, 6.0
 MOST = 20_000  # scratches on a surface that model auto lays out

@@ -7,8 +7,10 @@ from typing import Any
 from ..lights.knobs import KNOBS as LIGHTS
 from ..profiles.knobs import KNOBS as PROFILES
 from ..reflectance.diffraction.knobs import KNOBS as DIFFRACTION
+from ..reflectance.grooves.knobs import KNOBS as GROOVES
 from ..scene import Wave
 from ..scene.knob import QUALITIES, Knob, Value
+from ..scratches.knobs import KNOBS as SCRATCHES
 from .choice import EffectPlan, TablePlan
 
 _OWN = (
@@ -61,7 +63,8 @@ _OWN = (
     ),
 )
 
-KNOBS: dict[str, Knob] = {knob.name: knob for knob in (*_OWN, *PROFILES, *LIGHTS, *DIFFRACTION)}
+_ALL = (*_OWN, *PROFILES, *SCRATCHES, *LIGHTS, *DIFFRACTION, *GROOVES)
+KNOBS: dict[str, Knob] = {knob.name: knob for knob in _ALL}
 """Name -> knob."""
 
 
@@ -82,8 +85,13 @@ def by_quality(quality: str | None) -> dict[str, Value]:
 
 
 def turned(knobs: Mapping[str, Value], where: str) -> dict[str, Any]:
-    """Field -> value of the knobs that set fields of ``where``: settings, table or wave. "auto" sets nothing."""
+    """Field -> value of the knobs that set fields of ``where``: settings, table, wave and so on. "auto" sets nothing."""
     return {KNOBS[n].place[1]: v for n, v in knobs.items() if KNOBS[n].place[0] == where and v != "auto"}
+
+
+def value(knobs: Mapping[str, Value], name: str) -> Value:
+    """What a knob is at where only some are turned."""
+    return knobs.get(name, KNOBS[name].default)
 
 
 def switched(knobs: Mapping[str, Value]) -> dict[str, bool]:

@@ -43,11 +43,16 @@ def resolve(scene: Scene, settings: Settings) -> tuple[Settings, tuple[int, int]
 
     quality = settings.quality or o.quality
     knobs = checked(settings.knobs)
-    asked, chosen_by = turned(knobs, "settings"), by_quality(quality)
+    try:
+        authored = checked(dict(o.knobs))
+    except ValueError as error:
+        raise ValueError(f"{scene.path}: {o.path}: {error}") from None
+    asked, chosen_by = turned(knobs, "settings"), {**by_quality(quality), **authored}
+    stage_asks = turned(authored, "settings")
     own = {n: k for n, k in KNOBS.items() if k.place[0] == "settings"}
     falls_to: dict[str, Any] = {k.place[1]: chosen_by.get(n, k.default) for n, k in own.items()}
     own_quality = by_quality(settings.quality).get("spp")
-    spp: Any = asked.get("spp") or settings.spp or own_quality or o.spp or falls_to["spp"]
+    spp: Any = asked.get("spp") or settings.spp or own_quality or stage_asks.get("spp") or o.spp or falls_to["spp"]
     chosen = settings.filter or o.filter
     filter_width = settings.filter_width
     if filter_width is None:
@@ -64,12 +69,16 @@ def resolve(scene: Scene, settings: Settings) -> tuple[Settings, tuple[int, int]
         quality=quality,
         max_error=settings.max_error or o.max_error,
         integrator=settings.integrator or o.integrator or "direct",
-        max_depth=asked.get("max_depth") or settings.max_depth or o.max_depth or falls_to["max_depth"],
+        max_depth=asked.get("max_depth")
+        or settings.max_depth
+        or stage_asks.get("max_depth")
+        or o.max_depth
+        or falls_to["max_depth"],
         filter=chosen,
         filter_width=filter_width,
         cone_taps=asked.get("cone_taps") or settings.cone_taps or falls_to["cone_taps"],
-        model=asked.get("model") or settings.model,
-        effects={**dict(o.effects), **switched(knobs), **settings.effects},
+        model=asked.get("model") or settings.model or stage_asks.get("model"),
+        effects={**switched(authored), **dict(o.effects), **switched(knobs), **settings.effects},
         knobs={**chosen_by, **knobs},
     )
     return decided, (width, height), (x0, x1, y0, y1)

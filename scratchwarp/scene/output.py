@@ -51,7 +51,7 @@ class RenderOptions:
         depth_of_field: False when disableDepthOfField is set.
         spp, seed, max_error, quality, integrator, max_depth: of ScratchRenderSettingsAPI, when authored.
         filter: box, gaussian or blackmanHarris; filter_width: pixels, full width.
-        effects: (name, enabled) pairs that the stage forces.
+        effects: (name, enabled) pairs that the stage forces. knobs: (name, value as text) pairs that it turns.
     """
 
     path: str = ""
@@ -70,6 +70,7 @@ class RenderOptions:
     filter_width: float | None = None
     effects: tuple[tuple[str, bool], ...] = ()
     products: tuple[RenderProduct, ...] = ()
+    knobs: tuple[tuple[str, str], ...] = ()
 
     def layers(self, known: Iterable[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
         """(layers that the products' vars ask for, in order; sources that are none of ``known``).

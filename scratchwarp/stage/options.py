@@ -109,6 +109,9 @@ def _options(reading: Reading, prim: Usd.Prim, merged: _Merged, products: Sequen
         x0, y0, x1, y1 = 0.0, 0.0, 1.0, 1.0
     forced = {str(name): False for name in reading.value(prim, _PREFIX + "disableEffects", [])}
     forced |= {str(name): True for name in reading.value(prim, _PREFIX + "enableEffects", [])}
+    knobs = [str(text) for text in reading.value(prim, _PREFIX + "knobs", [])]
+    for text in (text for text in knobs if not all(text.partition("="))):
+        reading.warn(prim.GetPath(), f"{_PREFIX}knobs has {text!r}, which is not NAME=VALUE; it is ignored")
     try:
         return RenderOptions(
             path=str(prim.GetPath()),
@@ -127,6 +130,7 @@ def _options(reading: Reading, prim: Usd.Prim, merged: _Merged, products: Sequen
             filter_width=None if own["filterWidth"] is None else float(own["filterWidth"]),
             effects=tuple(sorted(forced.items())),
             products=tuple(products),
+            knobs=tuple((t.partition("=")[0], t.partition("=")[2]) for t in knobs if all(t.partition("="))),
         )
     except ValueError as error:
         raise StageError(f"{reading.path}: {error}") from None

@@ -1,13 +1,17 @@
 """Knobs: each is declared once, and does what it says."""
 
+from dataclasses import replace
+
 import pytest
 
 import scratchwarp as sw
-from scratchwarp.kernels.assemble import kernel_key
+from scratchwarp.kernels import geometry, grooves
+from scratchwarp.kernels.assemble import camera_data, kernel_key
 from scratchwarp.plan.effects import EFFECTS
 from scratchwarp.plan.knobs import KNOBS, acting, by_quality, checked
 from scratchwarp.scene import Wave
 from scratchwarp.scene.knob import Knob
+from scratchwarp.scene.output import RenderOptions
 
 from ..render import scenes as S
 
@@ -26,10 +30,13 @@ def seen(made):
         for t in made.tables
     ]
     key = kernel_key(WORLD, made)
-    return s.spp, s.cone_taps, s.max_depth, s.model, tables, {n for n in EFFECTS if made.on(n)}, key
+    footprint = camera_data(WORLD, made).footprint
+    return s.spp, s.cone_taps, s.max_depth, s.model, footprint, tables, {n for n in EFFECTS if made.on(n)}, key
 
 
-@pytest.mark.parametrize("name", [n for n in KNOBS if not n.startswith("diffraction") and "farField" not in n])
+@pytest.mark.parametrize(
+    "name", [n for n in KNOBS if not n.startswith(("diffraction", "grooves")) and "farField" not in n]
+)
 def test_every_value_of_a_knob_changes_the_plan(name):
     path = {"integrator": "path"} if name == "pathDepth" else {}
     others = {"lights.cones": "both"} if name == "tables.theta" else {}
@@ -58,6 +65,49 @@ def test_colours_of_diffraction_are_those_asked_for():
     assert turned_wave(wave, {"diffraction.wavelengths": "auto"}) is wave
     made = turned_wave(wave, {"diffraction.wavelengths": 8, "diffraction.colors": "rgb"})
     assert (made.samples, made.sampling) == (8, "rgb")
+
+
+def test_every_switch_changes_what_diffracts():
+    """Footprints, lights and look-ups of scratches that diffract are compiled in or left out."""
+    layer = replace(S.scratched().layers[0], distribution="random", density=1.0, width=2.0, depth=0.5)
+    waved = replace(S.scratched(), wave=Wave(), layers=(layer,))
+    sun = replace(S.dome(), path="/dome")
+    world = S.scene([S.plane()], [waved], [sun])
+    for name in ("diffraction.lights", "diffraction.footprint", "diffraction.segmentLookup"):
+        plans = [sw.make_plan(world, sw.Settings(width=8, height=8, knobs={name: v})) for v in KNOBS[name].values]
+        keys = [kernel_key(world, made) for made in plans if name in acting(made)]
+        assert len(set(keys)) >= (2 if name == "diffraction.segmentLookup" else 3), name
+
+
+def test_grooves_have_the_lines_and_bounces_asked_for():
+    layer = replace(S.scratched().layers[0], distribution="linear", pitch=200.0, model="groove")
+    crossed = replace(layer, name="cross", angle=1.0)
+    world = S.scene([S.plane()], [replace(S.scratched(), layers=(layer, crossed))], [S.dome()])
+
+    def built(**knobs):
+        plan = sw.make_plan(world, sw.Settings(width=8, height=8, spp=4, knobs=knobs))
+        shape = geometry.pack(world, True, False, {}, "cpu")
+        return grooves.pack(world, plan, kernel_key(world, plan), shape).arrays, plan
+
+    arrays, plan = built()
+    assert {n for n in KNOBS if n.startswith("grooves")} <= set(acting(plan))
+    assert (arrays.slices, arrays.bounces) == (12, 8)
+    arrays, _ = built(**{"grooves.lines": 192, "grooves.bounces": 2})
+    assert (arrays.slices, arrays.bounces) == (48, 2)
+    assert not built(**{"grooves.footprint": "axis"})[1].on("grooves.crossings")
+
+
+def test_the_stage_turns_knobs_and_the_user_goes_before_it():
+    options = RenderOptions(path="/rs", knobs=(("spp", "3"), ("tables.rays", "64"), ("pathDepth", "2")))
+    world = replace(WORLD, options=options)
+    made = sw.make_plan(world, sw.Settings(width=8, height=8, quality="draft"))
+    assert (made.tables[0].rays, made.settings.max_depth) == (64, 2)
+    assert made.settings.spp == 4  # a quality asked for by the user
+    assert sw.make_plan(world, sw.Settings(width=8, height=8)).settings.spp == 3
+    assert sw.make_plan(world, sw.Settings(width=8, height=8, spp=5)).settings.spp == 5
+    wrong = replace(world, options=RenderOptions(path="/rs", knobs=(("glitter", "1"),)))
+    with pytest.raises(ValueError, match="/rs: knobs names 'glitter'"):
+        sw.make_plan(wrong, sw.Settings(width=8, height=8))
 
 
 def test_a_quality_turns_all_knobs_that_are_not_turned_otherwise():

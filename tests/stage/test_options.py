@@ -90,11 +90,19 @@ def test_scratch_settings_are_taken_only_when_authored(read):
         uniform float scratch:render:filterWidth = 2
         uniform string[] scratch:render:enableEffects = ["shadows"]
         uniform string[] scratch:render:disableEffects = ["domeLight"]
+        uniform string[] scratch:render:knobs = ["tables.rays=64", "tables.sampler=random"]
 """
     got = read(settings(body), more=NAMED).options
     assert (got.spp, got.seed, got.max_error, got.quality, got.integrator) == (8, 3, 0.25, "final", "path")
     assert (got.max_depth, got.filter, got.filter_width) == (5, "box", 2)
     assert dict(got.effects) == {"shadows": True, "domeLight": False}
+    assert dict(got.knobs) == {"tables.rays": "64", "tables.sampler": "random"}
+
+
+def test_a_knob_without_a_value_is_said(read, said):
+    scene = read(settings('uniform string[] scratch:render:knobs = ["spp"]'), more=NAMED)
+    said(scene, "/Render/rs", "'spp'", "NAME=VALUE")
+    assert scene.options.knobs == ()
 
 
 def test_depth_of_field_may_be_off(read):

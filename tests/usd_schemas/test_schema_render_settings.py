@@ -12,6 +12,7 @@ ATTRIBUTES = [
     ("maxDepth", "int", 8, 1, 1024, None, "none"),
     ("pixelFilter", "token", "blackmanHarris", None, None, "box gaussian blackmanHarris", None),
     ("filterWidth", "float", None, 0, 64, None, "pixel"),
+    ("knobs", "string[]", [], None, None, None, None),
     ("enableEffects", "string[]", [], None, None, None, None),
     ("disableEffects", "string[]", [], None, None, None, None),
 ]

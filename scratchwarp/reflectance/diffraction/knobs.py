@@ -19,6 +19,19 @@ KNOBS = (
         source=f"{_VELINOV}, Equations 27 and 29",
     ),
     Knob(
+        name="diffraction.footprint",
+        values=("paper", "gaussian", "exact"),
+        default="gaussian",
+        error="scratches near the rim of what a sample stands for are weighed as by another shape",
+        effects=("diffraction.segments",),
+        switches={
+            "paper": {"diffraction.paperFootprint": True},
+            "gaussian": {},
+            "exact": {"diffraction.exactFootprint": True},
+        },
+        source=f"{_VELINOV}, Equations 15 and 16",
+    ),
+    Knob(
         name="diffraction.colors",
         values=("auto", "rgb", "lookup", "wavelengths"),
         default="auto",
