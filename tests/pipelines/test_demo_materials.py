@@ -8,12 +8,13 @@ from scratchwarp.pipelines import author_demo, demo_materials, demo_zoom
 
 
 @pytest.mark.parametrize("name", sorted(demo_materials.TABLE_1))
-def test_materials_ask_for_a_path_traced_image_of_64_samples(tmp_path, name):
+def test_materials_ask_for_64_samples_and_metals_for_paths(tmp_path, name):
     (path,) = author_demo.author(tmp_path, 0.1, [name])
     scene = sw.read(path)
     assert not scene.warnings
     plan = sw.make_plan(scene)
-    assert plan.size == (640, 480) and plan.settings.spp == 64 and plan.settings.integrator == "path"
+    assert plan.size == (640, 480) and plan.settings.spp == 64
+    assert plan.settings.integrator == ("path" if name in ("gold", "painted") else "direct")
     sets, _, _, width, aspect, covered, _ = demo_materials.TABLE_1[name]
     (layer,) = scene.materials[0].layers
     assert layer.patterns == sets and layer.space == "uv"
