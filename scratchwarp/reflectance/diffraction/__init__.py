@@ -7,8 +7,9 @@ Files: ``scratch``, ``light``, ``outline`` the records; ``reflection``, ``lighti
 ``wide_color``, ``energy`` the calls; ``quadrature`` the reference in NumPy; ``inputs``, ``arrays`` between Python and
 the device. On the device: ``scratch_device`` the response of a scratch (``faddeeva_device`` its ends, ``lobe_device``
 its width, ``outline_device`` its profile), ``slice_device`` one slice of a light, ``sphere_device`` and
-``polygon_device`` where lights are cut, ``few_device`` at most four slices, ``radiance_device`` more, ``dome_device``,
-``ellipse_device``, ``color_device``, ``wide_color_device``; ``*_kernels`` loop over arrays.
+``polygon_device`` where lights are cut, ``few_device`` at most four slices (``round_rules``, ``round_device`` of round
+lights), ``radiance_device`` more, ``dome_device``, ``ellipse_device``, ``color_device``, ``wide_color_device``;
+``*_kernels`` loop over arrays.
 Public names load on first use.
 """
 

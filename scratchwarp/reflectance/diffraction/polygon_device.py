@@ -17,6 +17,7 @@ from .scratch_device import WaveScratch, to_scratch
 from .slice_device import Breaks, Lobe, LobeTables, SliceSum, add_crossing
 
 _BEYOND = wp.constant(real(4.0))
+_APART = wp.constant(real(0.0025))  # of the range in which corners are kept
 _PARALLEL = wp.constant(real(1.0e-12))
 
 
@@ -139,12 +140,16 @@ def polygon_breaks(light: PolygonView, s: WaveScratch, after: real) -> Breaks:
 
 
 @wp.func
-def _mark(marks: Marks, u: real, first: real, last: real) -> Marks:
+def _mark(marks: Marks, u: real, first: real, last: real, turn: int) -> Marks:
     r = marks
-    r.low = wp.min(r.low, u)
-    r.high = wp.max(r.high, u)
+    if u < r.low:
+        r.low = u
+        r.turn_low = turn
+    if u > r.high:
+        r.high = u
+        r.turn_high = turn
     if u > first and u < last:
-        r = add_mark(r, u)
+        r = add_mark(r, u, turn, _APART * (last - first))
     return r
 
 
@@ -164,7 +169,7 @@ def _mark_turn(marks: Marks, a: vec3, b: vec3, first: real, last: real) -> Marks
         length = wp.length(m)
         if length > ZERO:
             turn = wp.sign(grows) * wp.sqrt(m[1] * m[1] + m[2] * m[2]) / length
-            r = _mark(r, turn, first, last)
+            r = _mark(r, turn, first, last, 1)
     return r
 
 
@@ -181,15 +186,16 @@ def polygon_marks(light: PolygonView, s: WaveScratch, first: real, last: real) -
         for i in range(light.count):
             e = clipped_edge(light, s, i)
             if e.inside != 0:
-                r = _mark(r, _direction(e.a), first, last)
+                r = _mark(r, _direction(e.a), first, last, 0)
                 r = _mark_turn(r, e.a, e.b, first, last)
                 if e.leaves != 0:
-                    r = _mark(r, _direction(e.b), first, last)
+                    r = _mark(r, _direction(e.b), first, last, 0)
                 if e.enters != 0 or e.leaves != 0:
                     at = wp.where(e.enters != 0, e.a, e.b)
                     if known == 0:
                         start = at
                         known = 1
+                        r.profiled = 1
                     r = _mark_turn(r, start, at, first, last)
     return r
 
@@ -261,6 +267,6 @@ def cut_polygon(light: PolygonView, lobe: Lobe, tables: LobeTables, rules: Rules
 
 
 @wp.func
-def short_polygon(light: PolygonView, lobe: Lobe, rules: Rules, sharp: real, slices: int) -> real:
+def short_polygon(light: PolygonView, lobe: Lobe, tables: LobeTables, rules: Rules, sharp: real, slices: int) -> real:
     """No short cut."""
     return -ONE

@@ -21,6 +21,9 @@ TABLE = wp.constant(2)
 NUMERIC = wp.constant(3)
 """Antiderivative: numerical, where the depth phase depends on psi."""
 
+LENGTH = wp.constant(4)
+"""No antiderivative: what is lit of a slice alone, as a length of xi_2."""
+
 _PANEL = wp.constant(real(1.0))  # cycles of phase for each 8 nodes: error 1e-9
 _PANEL_NODES = wp.constant(8)
 
@@ -28,10 +31,11 @@ _PANEL_NODES = wp.constant(8)
 @wp.struct
 class LobeTables:
     """Outlines (rows of ``outline_transform``) and, for each lobe that has one, the integral from 0 of |P|^2 / lambda^2
-    over xi_2 and its slope at equal steps over [-2, 2]."""
+    over xi_2 and its slope at equal steps over [-2, 2]; ``rounds``: the table of ``round_rules``."""
 
     outlines: wp.array(dtype=vec4)
     integrals: wp.array(dtype=vec2)
+    rounds: wp.array2d(dtype=vec4)
 
 
 @wp.struct
@@ -144,7 +148,7 @@ def add_crossing(
         r.rest += factor * lobe_integral_paper(lobe.ratio * xi2)
     elif lobe.kind == TABLE:
         r.rest += factor * tabled_integral(lobe, tables, xi2)
-    else:
+    elif lobe.kind == NUMERIC:
         psi = wp.atan2(across, wp.max(height, ZERO))
         if r.crossings == 0:
             r.anchor = psi

@@ -3,15 +3,16 @@ closed form without angles, for lights of any size."""
 
 import warp as wp
 
-from .few_device import BEYOND, WIDE, Marks, inverse_erf, spread_node, spread_weight
+from .few_device import WIDE, Marks, add_mark
 from .lobe_device import sinc
-from .quadrature_device import Rules, rule_node, rule_weight
-from .real_device import HALF, ONE, PI, ZERO, real, vec2, vec3, vec4
+from .quadrature_device import Rules
+from .real_device import HALF, ONE, PI, TWO, ZERO, real, vec2, vec3, vec4
+from .round_device import fewer_nodes, round_nodes
 from .scratch_device import WaveScratch, to_scratch
-from .slice_device import EXACT, Breaks, Lobe, LobeTables, SliceSum, add_crossing
+from .slice_device import EXACT, Breaks, Lobe, LobeTables, SliceSum, add_crossing, slice_value
 
 _BEYOND = wp.constant(real(4.0))
-_SHORT = wp.constant(real(0.04))  # of a fringe to either side: the parabola is within 6e-4 of its fringe
+_SHORT = wp.constant(real(0.016))  # of a fringe to either side: a parabola, within 1e-4 of its height
 _STEEP = wp.constant(real(0.1))
 _SQRT_PI = wp.constant(real(1.7724538509055159))
 _NARROW = wp.constant(real(0.15))  # of a fringe: 4e-7
@@ -101,11 +102,18 @@ def sphere_breaks(light: SphereView, s: WaveScratch, after: real) -> Breaks:
 
 @wp.func
 def sphere_marks(light: SphereView, s: WaveScratch, first: real, last: real) -> Marks:
-    """Its extent, as a round light without corners."""
+    """Its extent and, of one that the horizon cuts, its marks between ``first`` and ``last``."""
     r = Marks()
     r.low = light.extent.low
     r.high = light.extent.high
-    r.round = wp.where(light.extent.round_low != 0 and light.extent.round_high != 0, 2, 1)
+    # it turns where its rim does, and where the slices themselves end
+    r.turn_low = wp.where(light.extent.round_low != 0 or r.low <= -ONE, 1, 0)
+    r.turn_high = wp.where(light.extent.round_high != 0 or r.high >= ONE, 1, 0)
+    r.profiled = 1 - light.around
+    for i in range(4):
+        u = light.marks[i]
+        if u > wp.max(first, r.low) and u < wp.min(last, r.high):
+            r = add_mark(r, u, wp.where(i < 2, 1, 0), ZERO)
     return r
 
 
@@ -167,50 +175,61 @@ def cut_sphere(light: SphereView, lobe: Lobe, tables: LobeTables, rules: Rules, 
 
 
 @wp.func
-def short_sphere(light: SphereView, lobe: Lobe, rules: Rules, sharp: real, slices: int) -> real:
-    """``few`` of a whole sphere that is narrow against the fringes of sinc^2, a parabola across it; -1 where it is
-    not."""
+def _narrow(
+    light: SphereView, lobe: Lobe, node: vec4, side: real, near: real, reach: real, sharp: real, count: int
+) -> real:
+    """``short_sphere`` where sinc^2 is a parabola across all of it."""
     p = light.p
-    reach = light.rho * light.share
-    steep = light.rho * light.rho
-    x0 = sharp * (p[0] * light.cosine - reach + lobe.omega_o[0])
-    x1 = sharp * (p[0] * light.cosine + reach + lobe.omega_o[0])
-    near = wp.max(x0, -x1)
-    if lobe.kind != EXACT or light.around != 0 or lobe.ratio * light.share > _SHORT:
-        return -ONE
-    if p[2] <= light.share or steep < _STEEP or near > BEYOND:
-        return -ONE
     step = light.share
-    middle = lobe.omega_o[1] + p[1]
-    left = sinc(lobe.ratio * (middle - step))
-    level = sinc(lobe.ratio * middle)
-    right = sinc(lobe.ratio * (middle + step))
+    across = lobe.omega_o[1] + p[1]
+    left = sinc(lobe.ratio * (across - step))
+    level = sinc(lobe.ratio * across)
+    right = sinc(lobe.ratio * (across + step))
     c0 = level * level
     c1 = (right * right - left * left) * HALF / step
     c2 = (HALF * (right * right + left * left) - c0) / (step * step)
-    scale = ONE / steep
-    n = int(slices)
-    wide = n > 1 and wp.min(-x0, x1) >= WIDE
-    lo = real(0.0)
-    mass = real(2.0)
-    if wide:
-        n = 2
-    else:
-        lo = wp.erf(x0)
-        mass = wp.erf(x1) - lo
+    scale = ONE / (light.rho * light.rho)
+    grow = p[2] * scale / sharp
     total = real(0.0)
-    for i in range(n):
-        weight = HALF
-        x = real(2 * i - 1) * real(0.7071067811865476)
-        if not wide:
-            t = rule_node(rules, n, i)
-            x = inverse_erf(lo + mass * spread_node(t, HALF))
-            weight = rule_weight(rules, n, i) * spread_weight(t, HALF)
-        u = x / sharp - lobe.omega_o[0]
-        away = u - p[0]
-        root2 = light.sine2 - away * away - real(4.0) * u * p[0] * light.half_sine2
-        half = p[2] * wp.sqrt(wp.max(root2, ZERO)) * scale
-        d = (light.cosine - u * p[0]) * p[1] * scale - p[1]
-        total += weight * half * (c0 + d * (c1 + d * c2) + c2 * half * half / real(3.0))
-    total *= _SQRT_PI * mass * lobe.peak * PI * lobe.ratio
-    return wp.max(total, ZERO) / sharp
+    for j in range(count):
+        y = node[2 * j]
+        u = side * (near + y) / sharp - lobe.omega_o[0]
+        half2 = y * (TWO * reach - y) * grow * grow
+        d = ((light.cosine - u * p[0]) * scale - ONE) * p[1]
+        total += node[2 * j + 1] * (c0 + d * (c1 + d * c2) + c2 * half2 / real(3.0))
+    gone = wp.max(near, ZERO)
+    return total * TWO * lobe.peak * PI * lobe.ratio * grow * wp.exp(-gone * gone) / sharp
+
+
+@wp.func
+def short_sphere(light: SphereView, lobe: Lobe, tables: LobeTables, rules: Rules, sharp: real, slices: int) -> real:
+    """``few`` of a whole sphere above the horizon, by two slices; -1 where it is not one."""
+    p = light.p
+    if light.around != 0 or p[2] < light.share:
+        return -ONE
+    reach = sharp * light.rho * light.share
+    middle = sharp * (p[0] * light.cosine + lobe.omega_o[0])
+    near = wp.abs(middle) - reach  # of the nearer end; what is left of the other side is beyond
+    if near >= real(26.0):
+        return ZERO
+    side = wp.where(middle < ZERO, -ONE, ONE)
+    node = vec4(ZERO, ZERO, ZERO, ZERO)
+    if near <= -WIDE:
+        # the Gauss-Hermite rule of two nodes, as weights of what is divided by the root
+        for j in range(2):
+            y = -near + real(2 * j - 1) * real(0.7071067811865476)
+            node[2 * j] = y
+            node[2 * j + 1] = HALF * _SQRT_PI * wp.sqrt(y * (TWO * reach - y))
+    else:
+        node = round_nodes(tables.rounds, near, TWO * reach)
+    node = fewer_nodes(node, slices)
+    total = real(0.0)
+    if lobe.kind == EXACT and lobe.ratio * light.share <= _SHORT and light.rho * light.rho >= _STEEP:
+        return wp.max(_narrow(light, lobe, node, side, near, reach, sharp, wp.min(slices, 2)), ZERO)
+    for j in range(wp.min(slices, 2)):
+        y = node[2 * j]
+        weight = node[2 * j + 1]
+        root = wp.sqrt(wp.max(y * (TWO * reach - y), real(1.0e-300)))
+        u = side * (near + y) / sharp - lobe.omega_o[0]
+        total += weight / root * slice_value(cut_sphere(light, lobe, tables, rules, u), lobe)
+    return wp.max(total, ZERO) * wp.exp(-wp.max(near, ZERO) * wp.max(near, ZERO)) / sharp
