@@ -9,6 +9,7 @@ from ..scene import Curves, Layer
 
 # More than this many would not fit into memory together with their pieces.
 MOST = 5_000_000
+MOST_CORNERS = 40_000_000
 _POINTS_A_RADIAN = 8.0
 
 
@@ -20,7 +21,8 @@ def random_scratches(
     ``scale``: units of the layer's lengths a unit of u and of v (1, 1 in space uv; micrometres in space surface).
     As many as ``density`` or ``coverage`` (1 - e^-(number times area)) call for; their middles are spread evenly at
     random, their angles over ``angle_spread`` (all where distribution random has none), their widths and depths over
-    the layer's variations. Raises ValueError where that would be more than ``MOST``.
+    the layer's variations. Raises ValueError where that would be more than ``MOST``, or more
+    than ``MOST_CORNERS`` corners.
     """
     size = np.array([(high[0] - low[0]) * scale[0], (high[1] - low[1]) * scale[1]])
     length, width = max(layer.length, layer.width), layer.width
@@ -31,10 +33,16 @@ def random_scratches(
         number = layer.density * area * (1e-6 if layer.space == "surface" else 1.0)
     else:
         number = -math.log(max(1.0 - layer.coverage, 1e-4)) * area / (length * width)
-    if number > MOST:
+    points = 2 + math.ceil(min(abs(layer.curvature) * _POINTS_A_RADIAN, MOST_CORNERS))
+    if not number <= MOST:
         raise ValueError(
             f"{layer.label}: its coverage or density calls for {number:.3g} scratches, more than {MOST}; make them "
             "longer or wider, or use a regular distribution"
+        )
+    if number * points > MOST_CORNERS:
+        raise ValueError(
+            f"{layer.label}: {number:.3g} scratches of {points} corners each are more than {MOST_CORNERS}; make them "
+            "straighter or fewer"
         )
     rng = np.random.default_rng([layer.seed & 0xFFFFFFFF, *layer.name.encode()])
     n = int(rng.poisson(number)) if number < 1e6 else round(number)
@@ -44,7 +52,6 @@ def random_scratches(
         spread = math.pi
     angle = layer.angle + spread * (rng.random(n) - 0.5)
     turn = layer.curvature
-    points = 2 + math.ceil(abs(turn) * _POINTS_A_RADIAN)
     at = np.linspace(-0.5, 0.5, points)
     if turn == 0.0:
         along, across = length * at, np.zeros(points)

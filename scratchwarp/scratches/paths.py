@@ -12,6 +12,8 @@ from .generate import random_scratches
 
 # A circle is drawn by chords that leave it by at most this part of a groove's width.
 CHORD = 0.02
+# More grooves, or corners of rings and spirals, than anything could draw.
+MOST_LINES, MOST_CORNERS = 400_000, 20_000_000
 
 Array = np.ndarray[Any, Any]
 
@@ -33,6 +35,7 @@ def lay_out(
     does as well. ``curves``: of distribution curves, in uv.
 
     Regular patterns reach a little beyond the rectangle; those with a variation have widths and depths of their own.
+    Raises ValueError where that would be more than ``MOST_LINES`` lines or ``MOST_CORNERS`` corners of rings.
     """
     size = np.asarray(scale, float) * (1.0, handed)  # micrometres a unit of u and of mirrored v
     if layer.distribution == "curves" or layer.distribution in ("worley", "random"):
@@ -87,10 +90,19 @@ def _polylines(curves: Curves, size: Array) -> list[Path]:
     return made
 
 
+def _bounded(layer: Layer, count: float, most: int, what: str) -> None:
+    if not count <= most:
+        raise ValueError(
+            f"{layer.label}: it calls for {count:.3g} {what}, more than {most}; set its model to table, or make its "
+            "pitch larger"
+        )
+
+
 def _lines(layer: Layer, corners: Array, angle: float, shift: float) -> list[Array]:
     along, across = np.array([math.cos(angle), math.sin(angle)]), np.array([-math.sin(angle), math.cos(angle)])
     x, y = corners @ along, corners @ across + shift
     margin = 0.5 * float(x.max() - x.min()) + 10.0 * layer.pitch
+    _bounded(layer, float(np.ptp(y)) / layer.pitch, MOST_LINES, "grooves")
     first = math.floor(float(y.min()) / layer.pitch) - 2
     last = math.ceil(float(y.max()) / layer.pitch) + 2
     ends = np.array([x.min() - margin, x.max() + margin])
@@ -105,6 +117,12 @@ def _radii(corners: Array, center: Array, layer: Layer) -> tuple[float, float]:
     return nearest - 2.0 * layer.pitch, float(np.linalg.norm(corners - center, axis=1).max()) + 2.0 * layer.pitch
 
 
+def _ring_corners(layer: Layer, nearest: float, farthest: float) -> float:
+    """About how many corners rings from one radius to another have."""
+    turns = (farthest - max(nearest, 0.0)) / layer.pitch
+    return turns * max(math.pi / math.sqrt(2.0 * min(CHORD * layer.width / max(farthest, 1e-300), 0.25)), 8.0)
+
+
 def _runs(points: Array, corners: Array, margin: float) -> list[Array]:
     """The parts of a polyline within ``margin`` of the box about the corners."""
     low, high = corners.min(0) - margin, corners.max(0) + margin
@@ -117,6 +135,7 @@ def _runs(points: Array, corners: Array, margin: float) -> list[Array]:
 def _circles(layer: Layer, corners: Array, center: Array, shift: float) -> list[Array]:
     made: list[Array] = []
     nearest, farthest = _radii(corners, center, layer)
+    _bounded(layer, _ring_corners(layer, nearest, farthest), MOST_CORNERS, "corners of rings")
     for i in range(math.floor((max(nearest, 0.0) + shift) / layer.pitch), math.ceil((farthest + shift) / layer.pitch)):
         r = i * layer.pitch + 0.5 * layer.width - shift
         if r > 0.5 * layer.width:
@@ -129,6 +148,7 @@ def _circles(layer: Layer, corners: Array, center: Array, shift: float) -> list[
 
 def _spiral(layer: Layer, corners: Array, center: Array, shift: float) -> list[Array]:
     nearest, farthest = _radii(corners, center, layer)
+    _bounded(layer, _ring_corners(layer, nearest, farthest), MOST_CORNERS, "corners of a spiral")
     start = shift - 0.5 * layer.width  # radius = pitch turns - start
     turns = [(max(nearest, 0.5 * layer.width) + start) / layer.pitch]
     while layer.pitch * turns[-1] - start < farthest:
