@@ -165,8 +165,9 @@ def make_bounce(key: KernelKey, rotated, emission_at):
                     if wp.static(key.light_multipliers):
                         whole = terms_of(responses, lobe, b.wi, lobe.w_diffuse, lobe.w_specular)
                         part = terms_of(responses, lobe, b.wi, lobe.w_diffuse, 0.0)
-                        for c in range(3):
-                            out.diffuse_share[c] = part.value[c] / wp.max(whole.value[c], 1.0e-20)
+                        for channel in range(3):
+                            share = part.value[channel] / wp.max(whole.value[channel], 1.0e-20)
+                            out.diffuse_share[channel] = share
                     folded = to_local(lobe.frame, mirrored_at(out.direction, s.ng))
                     if folded[2] > 0.0:
                         out.pdf += terms_of(responses, lobe, folded, lobe.w_diffuse, lobe.w_specular).pdf

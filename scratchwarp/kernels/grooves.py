@@ -184,7 +184,11 @@ def _pattern(
     for plan, number, own_curves in zip(groove.layers, numbers, curves, strict=True):
         laid = lay_out(plan.layer, low, high, scale, hand, own_curves)
         paths += laid
-        sections += [_section(plan, path) for path in laid]
+        drawn: dict[tuple[float, float], Array] = {}  # grooves of one size share a section
+        for path in laid:
+            if (path.width, path.depth) not in drawn:
+                drawn[path.width, path.depth] = _section(plan, path)
+            sections.append(drawn[path.width, path.depth])
         own += [number] * len(laid)
         if len(paths) > MOST_PATHS:
             raise ValueError(

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .checks import freeze, in_range, one_of, put
+from .checks import all_finite, freeze, in_range, one_of, put
 
 CONFORMS = (
     "expandAperture",
@@ -47,6 +47,8 @@ class Camera:
     def __post_init__(self) -> None:
         who = self.path or "camera"
         put(self, transform=freeze(who, "transform", self.transform, (4, 4)))
+        all_finite(who, self, ("far",))
+        in_range(who, "far", self.far)
         one_of(who, "projection", self.projection, ("perspective", "orthographic"))
         in_range(who, "horizontalAperture", self.horizontal_aperture, 1e-12)
         in_range(who, "verticalAperture", self.vertical_aperture, 1e-12)

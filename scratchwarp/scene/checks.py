@@ -1,5 +1,7 @@
 """How records check and freeze what they hold: every message names the owner and the offending value."""
 
+from collections.abc import Iterable
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
@@ -31,6 +33,17 @@ def in_range(owner: str, name: str, value: float, low: float = -np.inf, high: fl
     """ValueError unless ``low <= value <= high`` (a NaN never is)."""
     if not low <= value <= high:
         raise ValueError(f"{owner}: {name} is {value}, expected a value in [{low:g}, {high:g}]")
+
+
+def all_finite(owner: str, record: Any, endless: Iterable[str] = ()) -> None:
+    """ValueError where a number of a record, alone or in a tuple, is NaN or infinite; ``endless`` may be infinite."""
+    for name in (f.name for f in fields(record)):
+        value = getattr(record, name)
+        for number in value if isinstance(value, tuple) else (value,):
+            if not isinstance(number, float | np.floating) or np.isfinite(number):
+                continue
+            if name not in endless or np.isnan(number):
+                raise ValueError(f"{owner}: {name} is {value}; every number must be finite")
 
 
 def one_of(owner: str, name: str, value: str, allowed: tuple[str, ...]) -> None:

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from .checks import freeze, in_range, one_of, put
+from .checks import all_finite, freeze, in_range, one_of, put
 from .normal_map import NormalMap
 
 SHAPES = ("flat", "vGroove", "rectangle", "trapezoid", "round", "quartic", "gaussian", "sine", "points")
@@ -47,6 +47,7 @@ class Profile:
     parameters: tuple[tuple[str, float], ...] = ()
 
     def __post_init__(self) -> None:
+        all_finite(self.path, self)
         one_of(self.path, "scratch:shape", self.shape, SHAPES)
         if self.shape == "points" and self.points is None:
             raise ValueError(f"{self.path}: scratch:points is empty; shape 'points' needs at least two (x, z) points")
@@ -150,6 +151,7 @@ class Layer:
         in_range(who, "seed", self.seed, 0, 2**32 - 1)
         for value in self.diffuse_color:
             in_range(who, "diffuseColor", value, 0.0, 1.0)
+        all_finite(who, self)
 
     @property
     def label(self) -> str:
@@ -171,6 +173,7 @@ class Wave:
     roughness: float = 0.0  # [um]
 
     def __post_init__(self) -> None:
+        all_finite("ScratchWaveAPI", self)
         in_range("ScratchWaveAPI", "coherenceRadius", self.coherence_radius, 1e-6, 1e9)
         if self.ior is not None:
             put(self, ior=freeze("ScratchWaveAPI", "ior", self.ior, (None, 3)))

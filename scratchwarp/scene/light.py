@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .checks import constant, freeze, in_range, put
+from .checks import all_finite, constant, freeze, in_range, put
 
 
 @dataclass(frozen=True)
@@ -15,6 +15,9 @@ class Shaping:
     focus_tint: tuple[float, float, float] = (0.0, 0.0, 0.0)
     cone_angle: float = np.pi / 2
     cone_softness: float = 0.0
+
+    def __post_init__(self) -> None:
+        all_finite("ShapingAPI", self)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -43,6 +46,7 @@ class Light:
     shadow_linked: frozenset[int] | None = None
 
     def __post_init__(self) -> None:
+        all_finite(self.path, self, ("shadow_distance",))
         put(self, radiance=freeze(self.path, "radiance", self.radiance, (3,)))
         for name, shape in self._arrays().items():
             put(self, **{name: freeze(self.path, name, getattr(self, name), shape)})

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .checks import constant, freeze, in_range, one_of, put
+from .checks import all_finite, constant, freeze, in_range, one_of, put
 from .layer import Layer, Wave
 from .texture import TextureInput
 
@@ -30,6 +30,7 @@ class PreviewSurface:
     normal: TextureInput | None = None
 
     def __post_init__(self) -> None:
+        all_finite("UsdPreviewSurface", self)
         one_of("UsdPreviewSurface", "opacityMode", self.opacity_mode, ("transparent", "presence"))
         in_range("UsdPreviewSurface", "ior", self.ior, 0.0, 100.0)
 
@@ -58,6 +59,7 @@ class ScratchSurface:
     ior: float = 1.5
 
     def __post_init__(self) -> None:
+        all_finite("ScratchSurface", self)
         one_of("ScratchSurface", "base", self.base, ("conductor", "dielectric", "diffuse"))
         one_of(
             "ScratchSurface",
@@ -103,6 +105,7 @@ class Measured:
 
     def __post_init__(self) -> None:
         owner = "ScratchMeasuredAPI"
+        all_finite(owner, self)
         one_of(owner, "source", self.source, ("stencils", "file"))
         one_of(owner, "format", self.format, ("auto", "utia", "merl", "rgl"))
         one_of(owner, "mask", self.mask, ("smooth", "binary"))

@@ -115,6 +115,7 @@ def _layer(reading: Reading, prim: Usd.Prim, name: str, curves: CurveSets, textu
         reading.warn(where, fault)
     tint = _albedo(reading, prim.GetAttribute(f"{_PREFIX}{name}:diffuseColor"), get("diffuseColor"), where)
     extra = tuple((attribute, get(attribute)) for attribute in _EXTRA)
+    sizes = fields["width"], fields["depth"]  # of curves without their own; what is no number Layer refuses
     try:
         return Layer(
             name=name,
@@ -127,7 +128,7 @@ def _layer(reading: Reading, prim: Usd.Prim, name: str, curves: CurveSets, textu
             eta=_triple(get("eta")),
             k=_triple(get("k")),
             diffuse_color=_triple(tint),
-            curves=curves.indices(where, targets, fields["width"], fields["depth"], tokens["space"]),
+            curves=curves.indices(where, targets, *sizes, tokens["space"]) if np.isfinite(sizes).all() else (),
             patterns=int(get("patterns")),
             cross_angle=float(np.radians(get("crossAngle"))),
             extra=extra,

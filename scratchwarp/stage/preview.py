@@ -111,7 +111,11 @@ def _constant(reading: Reading, shader: UsdShade.Shader, name: str, default: flo
     if isinstance(got, TextureInput):
         reading.warn(shader.GetPath(), f"inputs:{name} takes no texture; {default:g} is used")
         return default
-    return float(got)
+    number = float(got)
+    if not np.isfinite(number):
+        reading.warn(shader.GetPath(), f"inputs:{name} is {number}; {default:g} is used")
+        return default
+    return number
 
 
 def _rgb(values: Any, default: Any) -> tuple[float, ...]:

@@ -24,6 +24,7 @@ import tempfile
 import time
 import traceback
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from unittest import mock
@@ -33,6 +34,7 @@ import OpenImageIO as oiio
 
 import scratchwarp as sw
 from scratchwarp import cli
+from scratchwarp.kernels import KernelKey
 from scratchwarp.lights.registry import MODELS
 from scratchwarp.reflectance.responses import RESPONSES
 from scratchwarp.scene import DomeLight, PreviewSurface
@@ -42,7 +44,7 @@ from .mutate import mutate
 from .stages import stage
 
 LIMIT = 60
-"""Seconds that one stage may take, compiling aside."""
+"""Seconds of this process that one stage may take, compiling aside: its own, whatever else the machine does."""
 MEMORY = 12 << 30
 """Bytes of address space of a batch."""
 FINE = ("image", "refused", "built")
@@ -68,27 +70,41 @@ class Unbuilt(Exception):
 
 
 def shared(key):
-    """The key with code that changes no bit of the image, so that few kernels do for all stages."""
-    more = {"lights": tuple(m.name for m in MODELS.values()), "filter": "box", "orthographic": key.orthographic}
-    flags = ("directed", "lens", "shadows", "opacity", "emission", "normal_maps", "display_colors", "textures")
-    more |= dict.fromkeys((*flags, "preview", "measured", "light_links", "mesh_lights", "path"), True)
-    kinds = tuple(k for k in KINDS if k != "curves" or "curves" in key.distributions)
+    """The key with the code of more effects than the stage calls for, so that few kernels do for all stages."""
+    names = ("directed", "lens", "shadows", "opacity", "emission", "normal_maps", "display_colors", "textures")
+    names += ("preview", "measured", "light_links", "light_multipliers", "mesh_lights", "path")
+    more = {"lights": tuple(m.name for m in MODELS.values()), "filter": "box"}
     if key.distributions:
-        more |= {"distributions": kinds} | dict.fromkeys(
-            ("diffuse_scratches", "variation", "masks", "tints", "orientations"), True
-        )
-        more["cone_taps"] = key.closed_form
+        more["distributions"] = tuple(KINDS)
+        names += ("diffuse_scratches", "variation", "masks", "tints", "orientations", "closed_form", "cone_taps")
+        names += ("sample_lights", "sample_cones")
     if key.responses:
-        more["responses"] = tuple(RESPONSES) if key.distributions else tuple(n for n, r in RESPONSES.items() if r.base)
-    return replace(key, **more)
+        more["responses"] = tuple(n for n, r in RESPONSES.items() if key.distributions or r.base)
+    if key.glints:
+        names += ("glint_segments", "glint_lists", "glint_hierarchy", "glint_bands", "glint_gratings", "glint_areas")
+        names += ("glint_lookup", "glint_numeric")
+    if key.grooves:
+        names += ("groove_crossings", "groove_bounces")
+    return replace(key, **more, **dict.fromkeys(names, True))
+
+
+def plain(key):
+    """Whether a kernel is one of those that most stages need."""
+    return bool(key.distributions) and not (key.glints or key.grooves or key.responses or key.orthographic)
+
+
+def every(key):
+    """Any kernel."""
+    return True
 
 
 @dataclass
 class Bench:
-    """What is watched while one stage is rendered."""
+    """What is watched while one stage is rendered; ``wanted``: whether a kernel may be compiled."""
 
     kernels: int
     compiled: set
+    wanted: Callable[[KernelKey], bool] = every
     scene: object = None
     film: object = None
     furnace: bool = False
@@ -113,14 +129,14 @@ def watched(bench):
 
     def loaded(key, *rest):
         bench.built = True
-        if key not in bench.compiled and len(bench.compiled) >= bench.kernels:
+        if key not in bench.compiled and (len(bench.compiled) >= bench.kernels or not bench.wanted(key)):
             raise Unbuilt
         bench.compiled.add(key)
-        left = signal.alarm(0)
+        left, _ = signal.setitimer(signal.ITIMER_PROF, 0.0)
         try:
             return real_loaded(key, *rest)
         finally:
-            signal.alarm(left)
+            signal.setitimer(signal.ITIMER_PROF, left)
 
     def read(path, **options):
         scene = real_read(path, **options)
@@ -204,13 +220,13 @@ def _verdict(status, said, folder, before, bench):
     return "refused", last
 
 
-def run_one(seed, folder, compiled=None, kernels=24):
-    """Render the stage of a number into a folder of its own."""
+def run_one(seed, folder, compiled=None, kernels=24, wanted=every):
+    """Render the stage of a number into a folder of its own; ``compiled``: kernels there are already."""
     started = time.perf_counter()
     folder = Path(folder)
     rng = write_stage(seed, folder)
     before = {p.name for p in folder.iterdir()}
-    bench = Bench(kernels, set() if compiled is None else compiled, furnace=rng.integers(4) == 0)
+    bench = Bench(kernels, set() if compiled is None else compiled, wanted, furnace=rng.integers(4) == 0)
     argv = ["render", str(folder / "stage.usda"), str(folder / "out.exr"), "--imageWidth", "16", "--spp", "2"]
     argv += ["--threads", "1", "--filter", "box", *COARSE]
     argv += [["--integrator", "path", "--maxDepth", "3"], [], ["--frames", "2"], ["--frames", "4"]][rng.integers(4)]
@@ -219,12 +235,12 @@ def run_one(seed, folder, compiled=None, kernels=24):
         raise Hang
 
     said = io.StringIO()
-    old = signal.signal(signal.SIGALRM, late)
-    signal.alarm(LIMIT)
+    old = signal.signal(signal.SIGPROF, late)
+    signal.setitimer(signal.ITIMER_PROF, LIMIT)
     try:
         with watched(bench), contextlib.redirect_stderr(said), contextlib.redirect_stdout(said):
             status = cli.main(argv)
-        signal.alarm(0)
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
         if "[Unbuilt;" in said.getvalue():
             what, text = "built", ""
         else:
@@ -238,8 +254,8 @@ def run_one(seed, folder, compiled=None, kernels=24):
             raise
         what, text = "traceback", traceback.format_exc()[-2000:]
     finally:
-        signal.alarm(0)
-        signal.signal(signal.SIGALRM, old)
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
+        signal.signal(signal.SIGPROF, old)
     return Outcome(seed, what, text, round(time.perf_counter() - started, 3))
 
 
@@ -256,7 +272,7 @@ def inside(first, count, kernels, report, keep=None):
                 shutil.rmtree(folder, ignore_errors=True)
 
 
-def batches(first, count, kernels, report, stall=900.0):
+def batches(first, count, kernels, report, stall=1800.0):
     """The same in processes of their own: one that dies or stalls costs the stage that it was at, which fails."""
     done, log = 0, Path(tempfile.mkdtemp(prefix="scratchwarp-fuzz-")) / "log"
     while done < count:

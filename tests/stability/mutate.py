@@ -7,7 +7,21 @@ from pxr import Gf, Sdf, Tf, Vt
 
 BAD = (float("nan"), float("inf"), float("-inf"), 0.0, -1.0, 1e-30, 1e-12, 1e-6, 1e6, 1e12, 1e30, 3e38)
 INTS = (0, -1, 1, 2, 7, 2**31 - 1, -(2**31))
-WORDS = ("", "auto", "x", "ünï", "../..", "table", "curves", "diffraction", "groove", "mitre", "vertex", "scratch", "1e5")
+WORDS = (
+    "",
+    "auto",
+    "x",
+    "ünï",
+    "../..",
+    "table",
+    "curves",
+    "diffraction",
+    "groove",
+    "mitre",
+    "vertex",
+    "scratch",
+    "1e5",
+)
 FILES = ("pixels.png", "missing.png", "broken.png", ".", "stage.usda", "pixels.png[0]", "tiny.exr")
 APIS = ("ScratchLayerAPI:more", "ScratchLayerAPI", "ScratchWaveAPI", "ScratchCurvesAPI", "ScratchMeasuredAPI")
 TYPES = ("float", "int", "token", "string", "float3", "float[]", "matrix4d", "bool", "asset", "color3f", "double2")

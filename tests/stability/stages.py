@@ -99,16 +99,16 @@ LIGHTS = {
 """,
     "disk": f'def DiskLight "disk"\n{{\n    float inputs:specular = 0.5\n    {placed((0, 2.5, 0), (-90, 0, 0))}\n}}\n',
     "tube": f'def CylinderLight "lamp"\n{{\n    float inputs:radius = 0.1\n    {placed((0, 1.5, 1))}\n}}\n',
-    "sky": 'def DomeLight "sky"\n{\n    float inputs:intensity = 0.4\n    asset inputs:texture:file = @pixels.png@\n}\n',
+    "sky": 'def DomeLight "sky"\n{\n    float inputs:intensity = 0.4\n    asset inputs:texture:file = @tiny.exr@\n}\n',
     "even sky": 'def DomeLight "sky"\n{\n    float inputs:intensity = 0.4\n}\n',
-    "glowing mesh": f"""def Mesh "glow" (prepend apiSchemas = ["MeshLightAPI", "MaterialBindingAPI"])
-{{
+    "glowing mesh": """def Mesh "glow" (prepend apiSchemas = ["MeshLightAPI", "MaterialBindingAPI"])
+{
     point3f[] points = [(-1, 1.5, -1), (1, 1.5, -1), (0, 2, 0)]
     int[] faceVertexCounts = [3]
     int[] faceVertexIndices = [0, 1, 2]
     float inputs:intensity = 3
     rel material:binding = </other>
-}}
+}
 """,
     "linked": """def RectLight "linked" (
     prepend apiSchemas = ["CollectionAPI:lightLink"]

@@ -125,7 +125,11 @@ class Pattern:
         several = [profiles] * count if single else list(profiles)
         if len(several) != count:
             raise ValueError(f"profiles must be one for each of the {count} paths, got {len(several)}")
-        return [closed_section(section_points(f"profiles[{i}]", p)) for i, p in enumerate(several)]
+        made: dict[int, np.ndarray] = {}  # the same object is the same section
+        for i, p in enumerate(several):
+            if id(p) not in made:
+                made[id(p)] = closed_section(section_points(f"profiles[{i}]", p))
+        return [made[id(p)] for p in several]
 
     @staticmethod
     def _groove(points: np.ndarray, section: np.ndarray, number: int) -> Groove:

@@ -1,0 +1,133 @@
+"""Where each hard case is tested: case -> tests, as ``path::function`` below ``tests``. ``test_index`` sees to it that
+they exist; what the folder adds itself is listed, too."""
+
+_DIFFRACTION = "reflectance/diffraction"
+_GROOVES = "reflectance/grooves"
+_HARD = "render/test_hard_cases.py"
+_HERE = "stability"
+
+GEOMETRIC = {
+    "vertical walls": (f"{_GROOVES}/test_visibility.py::test_box_is_seen_and_lit_where_both_reach",),
+    "phi at a right angle": ("profiles/test_simulate.py::test_grazing_bins_conserve_energy",),
+    "a ray through a vertex": ("profiles/test_tracer.py::test_rays_through_vertices_are_kept",),
+    "concave cusps, a whispering gallery": (
+        "profiles/test_tracer.py::test_whispering_gallery_is_followed",
+        "profiles/test_simulate.py::test_deep_box_reports_what_it_loses",
+    ),
+    "no epsilon against self-intersection": ("profiles/test_tracer.py::test_size_does_not_matter",),
+    "zero depth, zero width": (
+        "profiles/test_simulate.py::test_flat_profile_is_the_anti_diagonal",
+        "profiles/test_profile.py::test_impossible_outlines_are_refused",
+    ),
+    "theta at a right angle": ("profiles/test_theta.py::test_slices_at_the_ends_are_exact",),
+    "gamma of nothing and of dips": ("profiles/test_theta.py::test_exponent_is_safe_and_flagged_where_there_is_none",),
+    "duplicated points": ("profiles/test_tracer.py::test_duplicated_points_change_nothing",),
+    "bulges and overhangs": (
+        "profiles/test_simulate.py::test_undercut_bulging_profile_against_brute_force",
+        f"{_GROOVES}/test_visibility.py::test_rays_see_the_same",
+    ),
+    "deltas on bin edges": ("profiles/test_simulate.py::test_deltas_on_bin_edges_are_shared",),
+    "coplanar pieces and T-junctions": (
+        f"{_GROOVES}/test_footprints.py::test_hard_cases_lose_nothing_and_are_continuous",
+    ),
+    "deformation at its centre and rim": (
+        "reflectance/mdf/test_density.py::test_hard_cases_are_finite",
+        f"{_HERE}/test_terms.py::test_stable",
+    ),
+    "stencils at their poles": ("reflectance/stencils/test_evaluate.py::test_hard_cases_are_finite",),
+}
+WAVES = {
+    "1 sinc at 0, M at 0": (
+        f"{_DIFFRACTION}/test_float32.py::test_sinc_at_zero_below_every_normal_number_and_at_whole_cycles",
+        f"{_DIFFRACTION}/test_terms.py::test_hard_arguments",
+    ),
+    "2 depths of nearly whole turns; (1 - cos x) / x": (
+        f"{_DIFFRACTION}/test_float32.py::test_depths_of_nearly_whole_turns_and_of_many",
+        f"{_DIFFRACTION}/test_reflection.py::test_hard_values",
+    ),
+    "3 phases of 100 rad": (f"{_DIFFRACTION}/test_reflection.py::test_hard_values",),
+    "4 far along the Gaussian": (f"{_DIFFRACTION}/test_reflection.py::test_hard_values",),
+    "5 ends of a scratch": (
+        f"{_DIFFRACTION}/test_reflection.py::test_tail_of_an_end",
+        f"{_DIFFRACTION}/test_terms.py::test_ends_where_the_naive_product_is_zero_times_infinity",
+    ),
+    "6 short intervals": (f"{_DIFFRACTION}/test_float32.py::test_integrals_from_zero_and_of_short_intervals",),
+    "7 zeros far out; Eq. 29 of large arguments": (
+        f"{_DIFFRACTION}/test_metamorphic.py::test_zeros_where_the_width_is_whole_waves",
+        f"{_DIFFRACTION}/test_float32.py::test_the_printed_integral_stays_finite",
+    ),
+    "8 tangent lights": (
+        f"{_DIFFRACTION}/test_light_geometry.py::test_bounds_that_the_printed_equations_miss",
+        f"{_DIFFRACTION}/test_float32.py::test_small_and_tangent_caps",
+    ),
+    "9 small lights": (f"{_DIFFRACTION}/test_float32.py::test_small_lights_everywhere",),
+    "10 offsets of micrometres in world coordinates": (
+        "render/test_invariance.py::test_moved_and_scaled",
+        f"{_HERE}/test_scenes.py::test_scaled_scenes_look_the_same",
+    ),
+    "11 beyond the horizon": (
+        f"{_DIFFRACTION}/test_reflection.py::test_horizon",
+        f"{_DIFFRACTION}/test_float32.py::test_lights_along_the_scratch_and_slices_beyond_the_sphere",
+    ),
+    "12, 13, 14 footprints": (
+        f"{_DIFFRACTION}/test_ellipse.py::test_hard_values",
+        f"{_DIFFRACTION}/test_ellipse.py::test_points_and_lines_for_footprints",
+    ),
+    "15 the printed integral": (f"{_DIFFRACTION}/test_terms.py::test_equation_29_is_as_bad_as_known",),
+    "16 lights around, below, along, on the line, degenerate": (
+        f"{_DIFFRACTION}/test_light_geometry.py::test_what_cannot_be_seen_gives_nothing",
+        f"{_DIFFRACTION}/test_light_geometry.py::test_lights_around_the_point_and_touching_it",
+        f"{_DIFFRACTION}/test_light_geometry.py::test_corners_and_edges_exactly_on_the_line",
+        f"{_DIFFRACTION}/test_light_geometry.py::test_slivers_and_disks",
+    ),
+}
+SCENES = {
+    "position of the scene": ("render/test_invariance.py::test_moved_and_scaled",),
+    "scale of the scene, 1e-6 to 1e6": (
+        f"{_HARD}::test_scenes_of_any_size",
+        f"{_HERE}/test_scenes.py::test_scaled_scenes_look_the_same",
+        f"{_DIFFRACTION}/test_light_geometry.py::test_sizes_from_atoms_to_stars",
+    ),
+    "needle triangles": (f"{_HERE}/test_scenes.py::test_needles_look_like_the_triangles_they_cut",),
+    "degenerate triangles": (
+        f"{_HARD}::test_faces_without_area",
+        "kernels/test_geometry.py::test_a_triangle_without_area_makes_no_nan",
+    ),
+    "coincident surfaces": (f"{_HERE}/test_scenes.py::test_coincident_surfaces_look_like_one",),
+    "mirrored and sheared transforms": (f"{_HERE}/test_scenes.py::test_placed_is_as_if_modelled_so",),
+    "singular transforms": (
+        f"{_HARD}::test_squashed_instances",
+        f"{_HERE}/test_bad_stages.py::test_transforms_over_time",
+    ),
+    "zero and huge widths, depths, densities": (
+        f"{_HARD}::test_extreme_layers",
+        f"{_HERE}/test_waves.py::test_any_size_and_wavelength",
+    ),
+    "zero and huge wavelengths": (f"{_HERE}/test_waves.py::test_any_size_and_wavelength",),
+    "lights at the horizon, of zero and of huge size, inside and around": (
+        f"{_HARD}::test_lights_that_touch",
+        f"{_HERE}/test_scenes.py::test_no_more_light_than_a_sky_of_it",
+        "lights/test_light_hard_cases.py::test_everything_is_finite",
+    ),
+    "grazing views": (f"{_HARD}::test_grazing_views",),
+    "back-facing views": (f"{_HARD}::test_camera_inside", f"{_HERE}/test_scenes.py::test_normals_that_face_elsewhere"),
+    "seams and poles of uv": (
+        f"{_HERE}/test_scenes.py::test_poles_and_seams_of_a_mapping_neither_shine_nor_are_dark",
+        f"{_HARD}::test_degenerate_mappings",
+    ),
+    "NaN and infinity in arrays": (
+        f"{_HERE}/test_bad_numbers.py::test_records_refuse_what_is_no_number",
+        f"{_HERE}/test_bad_numbers.py::test_functions_refuse_what_is_no_number",
+        f"{_HERE}/test_bad_stages.py::test_any_number_may_be_none",
+    ),
+    "time samples with singular matrices": (f"{_HERE}/test_bad_stages.py::test_transforms_over_time",),
+    "no energy above 1": (
+        "render/test_furnace.py::test_mirrors_vanish",
+        "render/test_furnace.py::test_rough_surfaces_never_gain_energy",
+        f"{_DIFFRACTION}/test_lighting.py::test_furnace",
+        f"{_GROOVES}/test_bounces.py::test_white_furnaces",
+    ),
+    "stages damaged at random": (f"{_HERE}/test_fuzz.py::test_damaged_stages",),
+}
+HARD_CASES = {**GEOMETRIC, **WAVES, **SCENES}
+"""Every hard case -> its tests."""

@@ -1,0 +1,20 @@
+"""Each stable formulation, turned back to its naive form, fails its test: ``test_terms.py::test_stable[NAME]``."""
+
+from pathlib import Path
+
+import pytest
+
+import scratchwarp
+
+from .terms import TERMS
+
+PACKAGE = Path(scratchwarp.__file__).parent
+
+
+@pytest.mark.parametrize("name", TERMS)
+def test_the_naive_form_misses_what_the_stable_one_meets(name):
+    term = TERMS[name]
+    values = term.naively()
+    assert term.off(values).max() > 1.0, (values, term.expected())
+    file, function = term.where.split(":")
+    assert f"def {function}(" in (PACKAGE / file).read_text()
