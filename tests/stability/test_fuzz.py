@@ -12,7 +12,6 @@ STAGES = 30
 ONCE = {
     4: "a scratched surface under a light with a specular multiplier did not compile",
     44: "a million grooves were laid out before they were counted",
-    1060: "every groove of a pattern had its own copy of the section",
 }
 _compiled: set = set()
 
