@@ -37,8 +37,12 @@ def count_bits(mask: wp.uint64) -> int:
 @wp.func
 def interval_bits(t0: float, t1: float, phase: float) -> wp.uint64:
     """Ones at k with t0 <= (k + phase) / 64 <= t1, k = 0..63."""
-    k0 = int(wp.max(wp.ceil(t0 * 64.0 - phase), 0.0))
-    k1 = int(wp.min(wp.floor(t1 * 64.0 - phase), 63.0))
+    # ceil and floor by conversions, as in ``whole``
+    first = wp.clamp(t0 * 64.0 - phase, 0.0, 64.0)
+    k0 = int(first)
+    if float(k0) < first:
+        k0 += 1
+    k1 = int(wp.clamp(t1 * 64.0 - phase + 1.0, 0.0, 64.0)) - 1
     bits = wp.uint64(0)
     if k1 >= k0:
         n = k1 - k0 + 1
@@ -66,20 +70,24 @@ def point_in(cx: int, cy: int, seed: wp.uint32) -> wp.vec2:
 
 
 @wp.func
-def misses(p: wp.vec2, a: wp.vec2, ix: int, iy: int, reach: float, seed: wp.uint32) -> bool:
-    """Whether a segment that touches two by two cells at most passes all their disks; else False.
+def few_cells(
+    p: wp.vec2, a: wp.vec2, ix: int, iy: int, radius: float, variation: float, seed: wp.uint32, phase: float
+) -> float:
+    """Covered fraction of a segment that touches two by two cells at most, as ``chord`` has it; -1 for longer ones.
 
-    Most layers of a sparse pattern are decided here, without a branch that depends on the disks.
+    Most layers of a sparse pattern are passed over after the first loop, without a branch that depends on the disks.
     """
+    reach = radius * (1.0 + variation)
     half_x = 0.5 * wp.abs(a[0]) + reach
     half_y = 0.5 * wp.abs(a[1]) + reach
-    passes = bool(False)
+    fraction = float(-1.0)
     if half_x <= 0.5 and half_y <= 0.5:
         # p lies in [0, 1)
         x0 = wp.where(p[0] < half_x, -1.0, 0.0)
         y0 = wp.where(p[1] < half_y, -1.0, 0.0)
-        scale = 1.0 / wp.max(wp.dot(a, a), 1.0e-20)
-        nearest = float(1.0e30)
+        length2 = wp.dot(a, a)
+        scale = 1.0 / wp.max(length2, 1.0e-20)
+        touched = int(0)
         for k in range(4):
             x = x0 + float(k & 1)
             y = y0 + float(k >> 1)
@@ -87,9 +95,36 @@ def misses(p: wp.vec2, a: wp.vec2, ix: int, iy: int, reach: float, seed: wp.uint
             to = wp.vec2(x + jitter[0] - p[0], y + jitter[1] - p[1])
             t = wp.clamp(wp.dot(to, a) * scale, -0.5, 0.5)
             off = to - t * a
-            nearest = wp.min(nearest, wp.dot(off, off))
-        passes = nearest > 1.0001 * reach * reach
-    return passes
+            touched = touched | wp.where(wp.dot(off, off) <= reach * reach, 1 << k, 0)
+        fraction = 0.0
+        if touched != 0:
+            if length2 < 1.0e-10:
+                # a point; the varied radii of its disks are left to ``chord``
+                fraction = wp.where(variation > 0.0, -1.0, 1.0)
+            else:
+                mask = wp.uint64(0)
+                for k in range(4):
+                    if (touched & (1 << k)) == 0:
+                        continue
+                    x = x0 + float(k & 1)
+                    y = y0 + float(k >> 1)
+                    cx = ix + int(x)
+                    cy = iy + int(y)
+                    jitter = point_in(cx, cy, seed)
+                    to = wp.vec2(x + jitter[0] - p[0], y + jitter[1] - p[1])
+                    r = radius
+                    if variation > 0.0:
+                        h = pcg_hash(wp.uint32(cx) * ALONG + wp.uint32(cy) * ACROSS + seed)
+                        r *= 1.0 + variation * (1.0 - 2.0 * wp.abs(2.0 * unit_float(pcg_hash(h ^ WIDTH)) - 1.0))
+                    b = wp.dot(to, a) * scale
+                    # across is exact where both are large: a cross product, not a difference of squares
+                    across = to[0] * a[1] - to[1] * a[0]
+                    rest = r * r - across * across * scale
+                    if rest > 0.0:
+                        half = wp.sqrt(rest * scale)
+                        mask = mask | interval_bits(b - half + 0.5, b + half + 0.5, phase)
+                fraction = float(count_bits(mask)) / 64.0
+    return fraction
 
 
 @wp.struct
@@ -244,7 +279,9 @@ def make_worley(varied: bool):
         near = Chord()
         if far < 1.0:
             at = wp.vec2(float(px - wp.float64(ix)), float(py - wp.float64(iy)))
-            if not misses(at, a, int(ix), int(iy), layer.radius * (1.0 + layer.width_variation), layer.seed):
+            fraction = few_cells(at, a, int(ix), int(iy), layer.radius, layer.width_variation, layer.seed, phase)
+            near.fraction = fraction
+            if fraction < 0.0 or (wp.static(varied) and fraction > 0.0):
                 near = chord(
                     at,
                     a,
@@ -271,7 +308,9 @@ def make_worley(varied: bool):
                 hit.along = 0.0
                 hit.stretch = drawn_stretch(unit_float(pcg_hash(hit.scratch)), layer.width_variation, 2.0)
         if alpha > 0.0:
-            tangent = wp.normalize(wp.vec2(1.0 - fy, fx))
+            tangent = wp.vec2(1.0, 0.0)
+            if layer.bend > wp.float64(0.0):
+                tangent = wp.normalize(wp.vec2(1.0 - fy, fx))
             hit.direction = wp.vec2(
                 layer.cos_a * tangent[0] - layer.sin_a * tangent[1],
                 layer.sin_a * tangent[0] + layer.cos_a * tangent[1],

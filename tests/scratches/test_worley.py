@@ -6,7 +6,7 @@ import warp as wp
 
 from scratchwarp.scratches import worley
 from scratchwarp.scratches.layer_device import LayerData
-from scratchwarp.scratches.worley_device import chord_coverage, count_bits, interval_bits
+from scratchwarp.scratches.worley_device import chord_coverage, count_bits, few_cells, interval_bits
 from scratchwarp.scratches.worley_device import worley as noise
 
 wp.set_module_options({"enable_backward": False})
@@ -24,6 +24,20 @@ def chords(
     i = wp.tid()
     phase = wp.randf(wp.rand_init(7, i))
     out[i] = chord_coverage(p[i], a, cell[i][0], cell[i][1], radius, variation, wp.uint32(77), phase, 0.0).fraction
+
+
+@wp.kernel
+def short_ways(
+    p: wp.array(dtype=wp.vec2),
+    a: wp.array(dtype=wp.vec2),
+    radius: float,
+    variation: float,
+    out: wp.array2d(dtype=float),
+):
+    i = wp.tid()
+    phase = wp.randf(wp.rand_init(7, i))
+    out[i, 0] = few_cells(p[i], a[i], i, 3 * i, radius, variation, wp.uint32(77), phase)
+    out[i, 1] = chord_coverage(p[i], a[i], i, 3 * i, radius, variation, wp.uint32(77), phase, 0.0).fraction
 
 
 @wp.kernel
@@ -52,6 +66,24 @@ def test_mean_matches_brute_force(radius):
     hit = (((points - x[:, None]) ** 2).sum(-1).min(1) <= radius**2).mean()
     expected = worley.coverage(radius)
     assert abs(hit - expected) < 5 * np.sqrt(expected * (1 - expected) / n) + 1e-4
+
+
+@pytest.mark.parametrize("variation", [0.0, 0.4])
+def test_short_footprints_are_covered_as_any_other(variation):
+    """Both ways round the ends of an interval on their own: one of 64 points each, two where disks join."""
+    rng = np.random.default_rng(3)
+    n, radius = 20000, 0.18
+    a = rng.uniform(-1, 1, (n, 2)) * 10 ** rng.uniform(-3, 0, (n, 1))
+    out = wp.zeros((n, 2), dtype=float, device="cpu")
+    p = wp.array(rng.random((n, 2)), dtype=wp.vec2, device="cpu")
+    wp.launch(short_ways, n, inputs=[p, wp.array(a, dtype=wp.vec2, device="cpu"), radius, variation, out], device="cpu")
+    few, any_length = out.numpy().T
+    short = few >= 0
+    fits = (np.abs(a) / 2 + radius * (1 + variation) <= 0.5).all(1)
+    assert fits.mean() > 0.4 and (short == fits).all()
+    off = np.abs(few - any_length)[short]
+    assert off.max() <= 2.01 / 64 and (off == 0).mean() > 0.999
+    assert (any_length[short] > 0).mean() > 0.05
 
 
 @pytest.mark.parametrize("a", [(0.0, 0.0), (0.001, 0.7), (5.0, 0.2), (3.0, -11.0)])
