@@ -22,7 +22,7 @@ def run(options: argparse.Namespace) -> Report:
     import scratchwarp as sw
     from scratchwarp.render import bar
     from scratchwarp.render.baked import SUFFIX, Oven, bake_folder
-    from scratchwarp.render.renderer import simulate_tables
+    from scratchwarp.render.tables import simulate_tables
 
     settings = sw.Settings(quality=options.quality, max_error=options.maxError)
     oven = Oven(bake_folder(options.stage))

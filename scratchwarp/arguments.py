@@ -171,6 +171,16 @@ def _check_table(args: argparse.Namespace) -> None:
         raise UsageError(str(error)) from None
 
 
+def scheduler(address: str) -> None:
+    """UsageError on what is no address of a farm."""
+    from .render.farm import workers_of
+
+    try:
+        workers_of(address)
+    except ValueError as error:
+        raise UsageError(f"--scheduler {error}") from None
+
+
 def listed(text: str) -> tuple[str, ...]:
     """The words between commas or blanks."""
     return tuple(text.replace(",", " ").split())
@@ -229,7 +239,8 @@ _EXAMPLES = {
   scratchwarp render ball.usda ball.png -cam /World/Close -color openColorIO
   scratchwarp render shot.usda shot.####.exr --frames 101:110x3,115 --sessionLayer scratched.usda
   scratchwarp render ball.usda ball.exr --aov depth,normal --effect scratches.interreflection=off --json
-  scratchwarp render ball.usda ball.exr --spp 4096 --checkpoint ball.part --resume""",
+  scratchwarp render ball.usda ball.exr --spp 4096 --checkpoint ball.part --resume
+  scratchwarp render shot.usda shot.####.exr --frames 1:240 --scheduler tcp://farm:8786""",
     "explain": "scratchwarp explain ball.usda\n  scratchwarp explain ball.usda --effect shadows=off --json",
     "simulate": """scratchwarp simulate quartic quartic.exr --depth 0.4 --plot quartic.png
   scratchwarp simulate groove.csv groove.png --metal gold --resolution 128
@@ -292,6 +303,9 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("--aov", action="append", default=[], metavar="NAMES", help="layers written [the stage's vars]")
     made.add_argument("--checkpoint", metavar="FILE", help="keep finished tiles here while rendering")
     made.add_argument("--resume", action="store_true", help="start from the tiles of --checkpoint")
+    made.add_argument(
+        "--scheduler", metavar="ADDRESS", help="render on a Dask farm: tcp://HOST:PORT, or local:N workers here"
+    )
     add_settings(made)
     add_color(made)
 

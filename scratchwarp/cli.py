@@ -28,13 +28,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         sys.stdout.flush()
         return status
     except KeyboardInterrupt:
-        kept = getattr(args, "checkpoint", None)
-        if kept and "#" not in kept and not Path(kept).exists():  # nothing was rendered yet
-            kept = None
-        says = f"{kept} is kept, add --resume to go on" if kept else "no file was left half written"
-        if getattr(args, "kept", None):
-            says = f"what was measured is kept in {args.kept}; the same command goes on"
-        _say(f"interrupted; {says}")
+        _interrupted(args)
         return 130
     except BrokenPipeError:  # the reader, such as head, has seen enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -53,40 +47,16 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def render(args: Command) -> int:
     """STAGE to one image, or to one for each frame."""
-    import scratchwarp as sw
+    from . import shots
+    from .render import signals
 
-    from . import image
-    from .render import AOVS, bar
-
-    settings, view = arguments.settings(args), _view(args)
-    jobs = _jobs(args)
-    for _, out, checkpoint in jobs:
-        image.check_writable(out)
-        if checkpoint and not Path(checkpoint).parent.is_dir():
-            raise FileNotFoundError(f"{checkpoint}: cannot be written, there is no folder {Path(checkpoint).parent}")
-    told: set[str] = set()
-    layers = arguments.listed(",".join(args.aov))
-    unknown = sorted(set(layers) - set(AOVS))
-    if unknown:
-        raise UsageError(f"--aov {unknown[0]!r} is not one of {', '.join(AOVS)}")
-    for frame, out, checkpoint in jobs:
-        scene = sw.read(args.stage, frame=frame, **arguments.reading(args))
-        _warn(scene.warnings, told, args.quiet)
-        plan = sw.make_plan(scene, settings)
-        _warn(plan.warnings, told, args.quiet)
-        with bar(args.quiet, Path(out).name) as progress:
-            film = sw.render(scene, plan, progress=progress, checkpoint=checkpoint, resume=args.resume)
-        _warn(film.warnings, told, args.quiet)
-        asked, foreign = scene.options.layers(AOVS)
-        missing = [f"{args.stage}: a render var asks for {source!r}, which is no layer" for source in foreign]
-        _warn(missing, told, args.quiet)
-        sw.write(film, out, aovs=layers or list(asked) or None, view=view)
-        if args.json:
-            warnings = tuple(dict.fromkeys(scene.warnings + plan.warnings + film.warnings))
-            row = {"image": out, "frame": frame, "warnings": warnings, "stats": dict(film.stats)}
-            print(json.dumps(row, default=_plain), flush=True)
-        elif not args.quiet:
-            print(out, flush=True)
+    settings, view, jobs = arguments.settings(args), _view(args), shots.shots(args)
+    with signals(lambda: _interrupted(args)) as control:
+        for row in shots.render(args, jobs, settings, view, control, _say, _warn):
+            if args.json:
+                print(json.dumps(row, default=_plain), flush=True)
+            elif not args.quiet:
+                print(row["image"], flush=True)
     return 0
 
 
@@ -326,23 +296,15 @@ def cache(args: Command) -> int:
     return 0
 
 
-def _jobs(args: Command) -> list[tuple[float | None, str, str | None]]:
-    """(frame, output, checkpoint) of each image asked for."""
-    from .frames import is_numbered, numbered, parse_frames
-    from .image import SUFFIXES
-
-    if args.resume and not args.checkpoint:
-        raise UsageError("--resume needs --checkpoint FILE")
-    if Path(args.out).suffix.lower() not in SUFFIXES:
-        raise UsageError(f"OUT {args.out!r} ends in none of {', '.join(SUFFIXES)}")
-    try:
-        frames: list[float | None] = [*parse_frames(args.frames)] if args.frames else [None]
-        for name, what in ((args.out, "OUT"), (args.checkpoint, "--checkpoint")):
-            if name and len(frames) > 1 and not is_numbered(name):
-                raise UsageError(f"{what} {name!r} is one file for {len(frames)} frames; write ### in it")
-        return [(f, numbered(args.out, f), args.checkpoint and numbered(args.checkpoint, f)) for f in frames]
-    except ValueError as error:
-        raise UsageError(str(error)) from error
+def _interrupted(args: Command) -> None:
+    """Say what is left of a command that was interrupted."""
+    kept = getattr(args, "checkpoint", None)
+    if kept and "#" not in kept and not Path(kept).exists():  # nothing was rendered yet
+        kept = None
+    says = f"{kept} is kept, add --resume to go on" if kept else "no file was left half written"
+    if getattr(args, "kept", None):
+        says = f"what was measured is kept in {args.kept}; the same command goes on"
+    _say(f"interrupted; {says}")
 
 
 def _view(args: Command) -> Any:

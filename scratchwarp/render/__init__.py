@@ -3,13 +3,17 @@
 Files:
     renderer    render(scene, plan) -> Film
     tiles       tiles over threads
-    launch      one kernel over tiles of one film
+    trace       jobs (samples of a tile), and the threads that do them; farm: workers of Dask that do; farm_worker
+    shoot       one job into sums of its own; launch: one kernel over tiles of one film
+    tables      the plan's tables, simulated or found
+    canvas      the image while it is rendered
+    interrupt   signals: stops and snapshots
     session     Session: a scene that is changed while its image refines; steps are the ways it gets better
     inspect     what made a pixel
     film        Film and its AOVs
     develop     sums -> AOVs and header
     target      error estimated from samples, and passes until it is small enough
-    checkpoint  finished tiles on disk
+    checkpoint  finished tiles on disk; described: what decides an image, by name
     baked       tables simulated beforehand, beside the stage
     progress    the progress bar
 
@@ -22,12 +26,14 @@ from typing import Any
 
 from ..plan import EffectPlan
 from ..scene import Scene
+from .farm import Farm
 from .film import AOVS, Film
+from .interrupt import Control, signals
 from .progress import bar
 from .renderer import render
 from .session import Redone, Session
 
-__all__ = ["AOVS", "Film", "Redone", "Session", "bar", "render"]
+__all__ = ["AOVS", "Control", "Farm", "Film", "Redone", "Session", "bar", "render", "signals"]
 
 
 class _Room(types.ModuleType):

@@ -10,8 +10,8 @@ from ..plan import EffectPlan
 from ..scene import Scene
 
 
-def aovs(sums: Mapping[str, np.ndarray], scene: Scene, samples: int) -> dict[str, np.ndarray]:
-    """Divide sums over samples [h, w] into AOVs. ``samples``: of each pixel.
+def aovs(sums: Mapping[str, np.ndarray], scene: Scene, samples: int | np.ndarray) -> dict[str, np.ndarray]:
+    """Divide sums over samples [h, w] into AOVs. ``samples``: of each pixel, or [h, w] where they differ.
 
     Samples that were not finite are left out of the mean of their pixel (``stats`` counts them).
     """
@@ -41,7 +41,7 @@ def aovs(sums: Mapping[str, np.ndarray], scene: Scene, samples: int) -> dict[str
     variance = (spread / np.maximum(good - 1.0, 1.0)).astype(np.float32)
     return {
         "color": color,
-        "alpha": np.clip(sums["alpha"] / np.float32(samples), 0.0, 1.0).astype(np.float32),
+        "alpha": np.clip(sums["alpha"] / np.maximum(np.asarray(samples, np.float32), 1.0), 0.0, 1.0).astype(np.float32),
         "depth": np.where(seen, over_hits("depth"), np.inf).astype(np.float32),
         "normal": normal,
         "albedo": np.clip(over_hits("albedo"), 0.0, 1.0),

@@ -59,9 +59,10 @@ def loaded(key: KernelKey, device: str, progress: Progress = silent) -> tuple[An
 
 
 def launcher(
-    kernel: Any, built: Assembled, plan: EffectPlan, film: FilmArrays, device: str
+    kernel: Any, built: Assembled, plan: EffectPlan, film: FilmArrays, device: str, alone: bool = False
 ) -> Callable[[Tile, int, int], None]:
-    """``launch(tile, first, count)``: add samples ``first`` to ``first + count - 1`` of a tile's pixels to the film.
+    """``launch(tile, first, count)``: add samples ``first`` to ``first + count - 1`` of a tile's pixels to the film,
+    which is that of the window, or where ``alone`` of one tile.
 
     The sums of a pixel do not depend on how its samples are split into launches, as long as they come in order. One
     launcher serves one thread.
@@ -77,7 +78,11 @@ def launcher(
     )
 
     def launch(tile: Tile, first: int, count: int) -> None:
-        window.tile_x, window.tile_y, window.tile_w, window.tile_h = tile.x, tile.y, tile.width, tile.height
+        if alone:
+            window.x0, window.y0 = plan.window[0] + tile.x, plan.window[2] + tile.y
+        else:
+            window.tile_x, window.tile_y = tile.x, tile.y
+        window.tile_w, window.tile_h = tile.width, tile.height
         window.first, window.count = first, count
         command.set_dim(tile.width * tile.height)
         command.set_param_at_index(0, window)

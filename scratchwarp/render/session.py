@@ -16,11 +16,12 @@ from ..profiles import Table
 from ..scene import Scene, Settings
 from ..scene.digest import digest
 from . import develop
+from .described import render_digest
 from .film import Film
 from .inspect import PixelReport, inspect
 from .launch import SAMPLES_A_LAUNCH, SUMS, film_arrays, launcher, loaded
-from .renderer import render_digest, simulate_table
 from .steps import Step, steps
+from .tables import simulate_table
 from .target import noted, remaining
 from .tiles import Tile, run
 
@@ -228,7 +229,7 @@ class Session:
             **self._built.numbers,
         }
         # the hash of a large scene takes longer than a step: only the finished image carries it
-        key = render_digest(self.scene, step.plan, self._built) if self.finished else ""
+        key = render_digest(self.scene, step.plan, self._built.key) if self.finished else ""
         header = develop.metadata(self.scene, step.plan, key, self._wall, self._cpu)
         header |= {"scratchwarp:spp": samples}
         if self.finished:

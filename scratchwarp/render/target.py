@@ -28,11 +28,17 @@ def remaining(sums: Mapping[str, Any], samples: int) -> float:
 
 
 def until(
-    target: float | None, samples: int, sums: Callable[[], Mapping[str, Any]], more: Callable[[int, int], None]
+    target: float | None,
+    samples: int,
+    sums: Callable[[], Mapping[str, Any]],
+    more: Callable[[int, int], None],
+    begun: int = 0,
 ) -> tuple[int, float]:
     """(samples, estimated error): ``more(first, count)`` doubles the samples until ``sums()`` are within ``target``, or
-    there are ``MOST`` times as many as at the start. None adds none."""
+    there are ``MOST`` times as many as at the start. None adds none. ``begun``: samples that are there already, of a
+    render that goes on."""
     most = MOST * samples
+    samples = max(samples, begun)
     while (error := remaining(sums(), samples)) > (float("inf") if target is None else target) and samples < most:
         more(samples, samples)
         samples *= 2

@@ -24,13 +24,18 @@ def tiles(width: int, height: int, edge: int) -> list[Tile]:
     ]
 
 
-def run(jobs: Sequence[Tile], workers: Sequence[Callable[[Tile], None]], done: Callable[[Tile], None]) -> None:
+def run(
+    jobs: Sequence[Tile],
+    workers: Sequence[Callable[[Tile], None]],
+    done: Callable[[Tile], None],
+    stop: threading.Event | None = None,
+) -> None:
     """Let every worker pull tiles until none is left; the first worker runs on the calling thread.
 
     ``done`` is called after each tile, one call at a time. An exception in any worker, KeyboardInterrupt included,
-    stops the others after the tile they are at and is raised here.
+    stops the others after the tile they are at, or before its end where they look at ``stop``, and is raised here.
     """
-    lock, stop = threading.Lock(), threading.Event()
+    lock, stop = threading.Lock(), stop or threading.Event()
     waiting: Iterator[Tile] = iter(jobs)
     failures: list[BaseException] = []
 

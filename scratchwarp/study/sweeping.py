@@ -17,8 +17,9 @@ import numpy as np
 
 from ..plan import EffectPlan, make_plan
 from ..plan.knobs import KNOBS, acting, checked
+from ..render.described import scene_digest
 from ..render.progress import Progress, silent
-from ..render.renderer import render, scene_digest
+from ..render.renderer import render
 from ..scene import Scene, Settings
 from ..scene.digest import digest
 from ..scene.knob import Value

@@ -29,6 +29,7 @@ ROOMS = (
     "pipelines",
     "viewers",
     "arguments",
+    "shots",
     "cli",
     "__main__",
 )

@@ -51,7 +51,8 @@ def test_renderer_options(renderer, tmp_path):
         "box",
         {"shadows": False, "lens": True},
     )
-    assert renderer.renders == [{"checkpoint": str(tmp_path / "c"), "resume": True}]
+    (how,) = renderer.renders
+    assert (how["checkpoint"], how["resume"], how["farm"]) == (str(tmp_path / "c"), True, None)
 
 
 def test_frames_are_numbered_and_warned_about_once(renderer, tmp_path, capsys):
@@ -94,6 +95,7 @@ def test_chosen_layers(renderer, tmp_path):
         (["render", "a.usda", "a.exr", "--frames", "1:3"], "###"),
         (["render", "a.usda", "a.#.exr", "--frames", "1:3", "--checkpoint", "c"], "###"),
         (["render", "a.usda", "a.exr", "--resume"], "--checkpoint"),
+        (["render", "a.usda", "a.exr", "--scheduler", "farm:80"], "local:N"),
         (["render", "a.usda", "a.jpg"], ".png"),
         (["render", "a.usda", "a.exr", "--effect", "shadows"], "NAME=on"),
         (["render", "a.usda", "a.exr", "--effect", "glitter=on"], "scratches.worley"),
