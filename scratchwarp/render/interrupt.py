@@ -42,7 +42,6 @@ def signals(late: Callable[[], None]) -> Iterator[Control]:
     over, told = threading.Event(), threading.Event()
 
     def interrupt(number: int, frame: object) -> None:
-        control.stop.set()
         if not told.is_set():  # a second one does not disturb what the first one ends
             told.set()
             raise KeyboardInterrupt
@@ -62,7 +61,8 @@ def signals(late: Callable[[], None]) -> Iterator[Control]:
     reader, writer = socket.socketpair()
     writer.setblocking(False)
     before = {number: signal.signal(number, interrupt) for number in ends}
-    before |= {number: signal.signal(number, lambda *_: control.snapshot.set()) for number in shows}
+    # the watcher does what there is to do: a handler that waits for a lock may wait for the line that it interrupts
+    before |= {number: signal.signal(number, lambda *_: None) for number in shows}
     wakeup = signal.set_wakeup_fd(writer.fileno(), warn_on_full_buffer=False)
     watcher = threading.Thread(target=watch, name="signals", daemon=True)
     watcher.start()
@@ -72,7 +72,8 @@ def signals(late: Callable[[], None]) -> Iterator[Control]:
         over.set()
         signal.set_wakeup_fd(wakeup)
         for number, handler in before.items():
-            signal.signal(number, handler)
+            late_one = number in shows and handler == signal.SIG_DFL  # would end the process
+            signal.signal(number, signal.SIG_IGN if late_one else handler)
         writer.close()
         watcher.join()
         reader.close()
