@@ -107,10 +107,11 @@ def _glint_fields(plan: EffectPlan) -> dict[str, Any]:
         return {}
     segments = plan.on("diffraction.segments")
     method = "closed-form" if plan.on("diffraction.closedForm") else "slices"
-    footprint = "exact" if plan.on("diffraction.exactFootprint") else "gaussian"
+    ways = ("paper", "exact", "point")
+    footprint = next((way for way in ways if plan.on(f"diffraction.{way}Footprint")), "gaussian")
     return {
         "glints": True,
-        "glint_footprint": "paper" if plan.on("diffraction.paperFootprint") else footprint,
+        "glint_footprint": footprint,
         "glint_segments": segments,
         "glint_lists": segments and plan.on("diffraction.lists"),
         "glint_hierarchy": segments and plan.on("diffraction.hierarchy"),
@@ -119,6 +120,7 @@ def _glint_fields(plan: EffectPlan) -> dict[str, Any]:
         "glint_lookup": plan.on("diffraction.lookup") and not plan.on("diffraction.paperLights"),
         "glint_numeric": plan.on("diffraction.outlines") or plan.on("diffraction.angles"),
         "glint_areas": plan.on("diffraction.areaLights"),
+        "glint_pairs": segments and plan.on("diffraction.pairs"),
         "glint_method": "paper" if plan.on("diffraction.paperLights") else method,
     }
 

@@ -20,6 +20,8 @@ class WaveMaterial:
     longest: float  # wavelength [um]
     first_band: int
     bands: int
+    coherent: int  # its scratches interfere
+    bin: float  # what a wavelength stands for in 1 / wavelength [1/um]
 
 
 @wp.struct
@@ -87,7 +89,8 @@ class Spectrum:
 class GlintArrays:
     """All of it. ``material``: material -> entry of ``waves``, or -1; ``colors``: linear Rec.709 of each wavelength,
     those of a material add up to 1; ``reflect[row, cosine]``, ``spectral[row, cosine, wavelength]``: reflectance at
-    even steps of the cosine from 0 to 1; ``shares``: linear Rec.709 of mean |D|^2. The pieces of triangle t are
+    even steps of the cosine from 0 to 1; ``shares``: mean |D|^2 of each part of the spectrum, ``share_colors`` linear
+    Rec.709 of these parts. The pieces of triangle t are
     ``segments[starts[t] .. starts[t + 1]]``; ``around[around_starts[t] .. around_starts[t + 1]]`` are the triangles
     that share a corner with it, and itself, which hold all within ``around_reach[t]`` [m] of it."""
 
@@ -98,7 +101,8 @@ class GlintArrays:
     colors: wp.array(dtype=wp.vec3)
     reflect: wp.array2d(dtype=wp.vec3)
     spectral: wp.array3d(dtype=float)
-    shares: wp.array(dtype=wp.vec3)
+    shares: wp.array2d(dtype=float)
+    share_colors: wp.array(dtype=wp.vec3)
     wides: wp.array(dtype=wp.vec3)
     outlines: wp.array(dtype=wp.vec4d)
     segments: wp.array(dtype=Segment)
@@ -113,26 +117,50 @@ class GlintArrays:
 
 
 @wp.struct
+class Pair:
+    """The other scratch of a pair. ``kind``: 0 none, 1 itself, 2 another one. ``way``: -1 where it runs backwards;
+    ``apart``: from it to the strand along y [um]; ``tilt`` [rad]; ``variance``: of the footprint along [um^2];
+    ``widest``: of all under the footprint [um]."""
+
+    kind: int
+    width: float
+    depth: float
+    layer: int
+    way: float
+    apart: float
+    tilt: float
+    variance: float
+    widest: float
+
+
+@wp.struct
 class Strand:
     """What a footprint sees of one scratch.
 
     Attributes:
         frame: x along it, y across, n the shading normal. bend: change of the direction along it, along y and n [1/m].
-        length: of the scratch in the footprint, weighted by it [1/um]: times the width it is a share of the area.
+        length: of the scratch in the footprint, weighted by it [1/um]: times the width it is a share of the area; part:
+            of what an endless line would have.
         mean, variance: of where along it that lies, from the shading point [m], [m^2].
         width, depth [um]. layer: in ``GlintArrays.layers``.
+        at, low, high: where it lies across, begins and ends, from the shading point [m]; pair: with another one.
     """
 
     frame: Frame
     bend_y: float
     bend_n: float
     length: float
+    part: float
     mean: float
     variance: float
     width: float
     depth: float
     layer: int
     pitch: float  # [um] of a grating, 0 for a scratch by itself
+    at: float
+    low: float
+    high: float
+    pair: Pair
 
 
 @wp.struct
@@ -190,13 +218,3 @@ def wide_integral(a: GlintArrays, layer: WaveLayer, depth: float, reach: float) 
     t = y - float(j)
     r = (1.0 - t) * below + t * above
     return wp.where(reach < 0.0, -1.0, 1.0) * r
-
-
-@wp.func
-def depth_share(a: GlintArrays, layer: WaveLayer, depth: float) -> wp.vec3:
-    """Mean |D|^2 of a depth, linear Rec.709."""
-    last = layer.share_count - 1
-    at = wp.clamp(depth / layer.share_step, 0.0, float(last))
-    cell = wp.min(int(at), last - 1)
-    t = at - float(cell)
-    return (1.0 - t) * a.shares[layer.share + cell] + t * a.shares[layer.share + cell + 1]

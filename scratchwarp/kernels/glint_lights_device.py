@@ -37,7 +37,7 @@ def make_strand_light(key: KernelKey, transmittance):
     models = models_of(key)
     names = [model.name for model in models]
     xi1_slices, radiance_of, radiance_from = make_glint_sums(
-        key.glint_method, key.glint_gratings, key.glint_lookup, key.glint_numeric
+        key.glint_method, key.glint_gratings, key.glint_lookup, key.glint_numeric, key.glint_pairs
     )
 
     @wp.func
@@ -318,7 +318,11 @@ def make_strand_light(key: KernelKey, transmittance):
                                     part = cap_light(a, wave, layer, strand, view, i, half_angle)
                                 if wp.static(key.glint_areas and names[j] in FLAT):
                                     part = flat_light(a, wave, layer, strand, view, lights.arrays, light, j, p)
-                            if largest(part) > 0.0:
+                            shows = largest(part) > 0.0
+                            if wp.static(key.glint_pairs):
+                                # what a pair adds may be negative
+                                shows = wp.length_sq(part) > 0.0
+                            if shows:
                                 seen = wp.vec4(0.0, 0.0, 0.0, 0.0)
                                 if n < wp.static(_MOST_KNOWN):
                                     seen = known[n]

@@ -19,6 +19,7 @@ from .glint_arrays_device import (
     wide_integral,
 )
 from .glint_bands_device import order_interval, order_point
+from .glint_pairs_device import pair_point, pair_slices
 from .lobe_device import largest
 
 _vec8 = wp.types.vector(length=8, dtype=float)
@@ -128,12 +129,12 @@ def point_light(
     return total
 
 
-def make_glint_sums(method: str, gratings: bool, lookup: bool, numeric: bool):
+def make_glint_sums(method: str, gratings: bool, lookup: bool, numeric: bool, pairs: bool = False):
     """(slices of a light, radiance under them, radiance under a direction).
 
     ``method``: "slices", "closed-form" or "paper"; ``gratings``: whether any pattern shows orders; ``lookup``: area
     lights by the tables of ``wide_integral`` instead of wavelengths; ``numeric``: some cross-section is no rectangle
-    or some phase depends on angles.
+    or some phase depends on angles; ``pairs``: strands stand for pairs of scratches.
     """
     single = method != "slices"
     across = across_integral_paper if method == "paper" else across_integral
@@ -179,6 +180,9 @@ def make_glint_sums(method: str, gratings: bool, lookup: bool, numeric: bool):
         """Sum over wavelengths and slices. ``places``: (xi_1, weight, cosine of the half angle); ``cuts``: intervals
         of xi_2."""
         total = wp.vec3(0.0, 0.0, 0.0)
+        if wp.static(pairs):
+            if strand.pair.kind > 0:
+                return pair_slices(a, wave, layer, strand, view.spread, view.o, view.shift, whole, count, places, cuts)
         if wp.static(gratings):
             if strand.pitch > 0.0:
                 for i in range(count):
@@ -254,6 +258,9 @@ def make_glint_sums(method: str, gratings: bool, lookup: bool, numeric: bool):
         a: GlintArrays, wave: WaveMaterial, layer: WaveLayer, strand: Strand, view: View, i: wp.vec3
     ) -> wp.vec3:
         """Under irradiance 1 across ``i``."""
+        if wp.static(pairs):
+            if strand.pair.kind > 0:
+                return pair_point(a, wave, layer, strand, view.spread, view.shift, i, view.o)
         if wp.static(gratings):
             if strand.pitch > 0.0:
                 cosine = wp.sqrt(wp.max(0.5 + 0.5 * wp.dot(i, view.o), 0.0))

@@ -4,11 +4,14 @@ import numpy as np
 
 from ..reflectance.diffraction.color import spectral_samples
 from ..scene import Wave
+from .glint_energy_device import BINS
 
 DEPTH_STEP = 0.006
 """Of ``wide_table`` [um]: a fringe of |D|^2 is at least 0.19 um deep; linear between, error 0.5 % of one."""
 REACH_STEP = 0.03
 """Of ``wide_table`` [um]: a fringe of M is at least 0.38 um wide; cubic between them."""
+SHARES = 1024
+"""Depths at which the mean |D|^2 of a layer is tabulated."""
 MOST_TERMS = 100_000_000
 """Of one table of a cross-section: a second or two."""
 MOST_NODES = 2_000_000
@@ -28,6 +31,31 @@ def wavelengths_of(wave: Wave) -> tuple[np.ndarray, np.ndarray]:
             at, weights = spectral_samples(n)
     order = np.argsort(at)
     return at[order] * 1e-3, weights[order]
+
+
+def bin_width(wave: Wave) -> float:
+    """What one wavelength stands for in 1 / wavelength [1/um]."""
+    first, last = wave.wavelength_range
+    count = 3 if wave.sampling == "rgb" else max(wave.samples, 1)
+    return 1e3 * (1.0 / first - 1.0 / last) / count
+
+
+def depth_shares(deepest: float, roughness: float, outline: np.ndarray | None) -> np.ndarray:
+    """Mean |D|^2 of depths from 0 to ``deepest`` [um], float32 [SHARES, COLUMNS]: of each part of the spectrum, even
+    in 1 / wavelength, and linear Rec.709 of all of it. ``outline``: as in ``wide_table``."""
+    at, weights = spectral_samples(16 * BINS)
+    k = 2.0 * np.pi * 2.0 / at * 1e3
+    depth = np.linspace(0.0, deepest, SHARES)[:, None]
+    if outline is None:
+        rough = np.exp(-0.5 * (k * roughness) ** 2)
+        power = 1.0 + rough**2 - 2.0 * rough * np.cos(k * depth)
+    else:
+        power = np.zeros((SHARES, len(k)))
+        for _, height, width, rise in outline:
+            # the mean of |1 - e^{i k h}|^2 over a straight facet
+            power += width * (2.0 - 2.0 * np.cos(k * depth * height) * np.sinc(k * depth * rise / (2.0 * np.pi)))
+    means = np.maximum(power.reshape(SHARES, BINS, 16).mean(-1), 0.0)
+    return np.concatenate([means, power @ weights], axis=1).astype(np.float32)
 
 
 def wide_table(

@@ -11,18 +11,18 @@ from ..optics import spectra
 from ..plan import EffectPlan
 from ..plan.waves import REGULAR, WaveLayerPlan, is_grating, looks_up, reflectances
 from ..reflectance.diffraction.arrays import rules
-from ..scene import Scene, Wave
+from ..reflectance.diffraction.color import spectral_samples
+from ..scene import Scene
 from ..scratches.generate import random_scratches
 from ..scratches.segments import SegmentSet, Stroke, build, surroundings
 from .geometry import PackedGeometry
 from .glint_arrays_device import BandData, GlintArrays, Spectrum, WaveLayer, WaveMaterial
-from .glint_tables import wavelengths_of, wide_table
+from .glint_energy_device import BINS
+from .glint_tables import SHARES, bin_width, depth_shares, wavelengths_of, wide_table
 from .key import KernelKey
 
 COSINES = 33
 _SIZES = ("depth", "width")
-SHARES = 1024
-"""Depths at which the mean |D|^2 of a layer is tabulated."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,21 +101,6 @@ def _spectrum(device: str) -> Spectrum:
     return s
 
 
-def _shares(plan: WaveLayerPlan, deepest: float, wave: Wave) -> np.ndarray:
-    """Linear Rec.709 of the mean |D|^2 of depths from 0 to ``deepest`` [um], shape [SHARES, 3]."""
-    at, weights = wavelengths_of(wave)
-    k = 2.0 * np.pi * 2.0 / at
-    depth = np.linspace(0.0, deepest, SHARES)[:, None]
-    if plan.outline is not None:
-        power = np.zeros((SHARES, len(at)))
-        for _, height, width, rise in plan.outline:
-            # the mean of |1 - e^{i k h}|^2 over a straight facet
-            power += width * (2.0 - 2.0 * np.cos(k * depth * height) * np.sinc(k * depth * rise / (2.0 * np.pi)))
-        return np.maximum(power @ weights, 0.0)
-    rough = np.exp(-0.5 * (k * wave.roughness) ** 2)
-    return np.maximum((1.0 + rough**2 - 2.0 * rough * np.cos(k * depth)) @ weights, 0.0)
-
-
 def _largest(plan: WaveLayerPlan, segments: SegmentSet | None, number: int, stretched: float) -> tuple[float, float]:
     """Greatest depth and width [um] of a layer; ``stretched``: micrometres of the uv square's side at most."""
     layer = plan.layer
@@ -151,7 +136,7 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
     numbers = {pair: number for number, pair in enumerate(numbers)}
     strokes = _strokes(scene, plan, key, shape, numbers)
     segments = None
-    if key.glint_footprint != "gaussian":
+    if key.glint_footprint in ("exact", "paper"):
         arrays.rules = rules((16,))
     if strokes:
         g = shape.arrays
@@ -178,6 +163,8 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
         at, weights = wavelengths_of(w.wave)
         record.sigma, record.first, record.count = w.wave.coherence_radius, sum(len(x) for x in lams), len(at)
         record.longest = float(at[-1])
+        record.coherent = int(w.wave.summation == "coherent")
+        record.bin = bin_width(w.wave)
         record.bands = sum(material == m for material, _ in bands)
         record.first_band = next((n for n, (material, _) in enumerate(bands) if material == m), 0)
         waves.append(record)
@@ -205,7 +192,7 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
         row.depth_spread = spread
         deepest, widest = _largest(own, segments, number, stretched)
         row.share, row.share_count, row.share_step = len(shares) * SHARES, SHARES, deepest / (SHARES - 1)
-        shares.append(_shares(own, deepest, w.wave))
+        shares.append(depth_shares(deepest, w.wave.roughness, own.outline))
         row.angles = int(w.wave.phase == "angleDependent")
         if own.outline is not None:
             row.outline, row.facets = sum(map(len, outlines)), len(own.outline)
@@ -236,7 +223,8 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
     arrays.colors = floats(np.concatenate(colors), wp.vec3)
     arrays.reflect = floats(np.stack(reflect), wp.vec3)
     arrays.spectral = floats(spectral, float)
-    arrays.shares = floats(np.concatenate(shares), wp.vec3)
+    arrays.shares = floats(np.concatenate(shares), float)
+    arrays.share_colors = floats(spectral_samples(BINS)[1], wp.vec3)
     if outlines:
         arrays.outlines = wp.array(np.concatenate(outlines), dtype=wp.vec4d, device=device)
     if wides:

@@ -13,51 +13,19 @@ from ..reflectance.base_device import CONDUCTOR, DIELECTRIC, SCHLICK, Base
 from ..reflectance.diffraction.ellipse_device import EXACT, PAPER, ellipse_footprint, make_ellipse
 from ..scratches.segments_device import Plane, plane_of
 from .geometry_device import Geometry, Surface
-from .glint_arrays_device import GlintArrays, Glints, Strand, depth_share
+from .glint_arrays_device import GlintArrays, Glints, Strand
 from .glint_bands_device import band_strand
+from .glint_energy_device import BINS, COLUMNS, balance_of, take_all, take_share
 from .glint_lights_device import make_strand_light
+from .glint_pairs_device import MOST_MATES, paired
+from .glint_stretch_device import between
 from .key import KernelKey
 from .lobe_device import luminance
 from .material_device import MaterialArrays
 from .world_device import LightSet
 
 _REACH = wp.constant(3.2)  # standard deviations of the footprint
-_SQRT_HALF = wp.constant(0.70710678)
 _SQRT_TWO_PI = wp.constant(2.5066282746)
-
-
-@wp.struct
-class Stretch:
-    """A Gaussian between two ends: what it holds, its mean and variance there."""
-
-    part: float
-    mean: float
-    variance: float
-
-
-@wp.func
-def between(low: float, high: float) -> Stretch:
-    """A Gaussian of mean 0 and variance 1 cut to [low, high]."""
-    r = Stretch()
-    a = wp.clamp(low, -8.0, 8.0)
-    b = wp.clamp(high, -8.0, 8.0)
-    middle = 0.5 * (a + b)
-    width = b - a
-    if width < 0.2:
-        # flat but for its slope
-        r.part = width / _SQRT_TWO_PI * wp.exp(-0.5 * middle * middle)
-        r.mean = middle * (1.0 - width * width / 12.0)
-        r.variance = width * width / 12.0
-    else:
-        r.part = 0.5 * (wp.erf(b * _SQRT_HALF) - wp.erf(a * _SQRT_HALF))
-        if r.part > 1.0e-6:
-            at_a = wp.exp(-0.5 * a * a) / _SQRT_TWO_PI
-            at_b = wp.exp(-0.5 * b * b) / _SQRT_TWO_PI
-            r.mean = (at_a - at_b) / r.part
-            r.variance = wp.clamp(1.0 + (a * at_a - b * at_b) / r.part - r.mean * r.mean, 0.0, 1.0)
-        else:
-            r.part = 0.0
-    return r
 
 
 @wp.func
@@ -67,29 +35,6 @@ def normal_change(g: Geometry, face: int, plane: Plane, x: float, y: float) -> w
     b = (x - plane.cx * c) / plane.bx
     n = g.normals[3 * face]
     return b * (g.normals[3 * face + 1] - n) + c * (g.normals[3 * face + 2] - n)
-
-
-@wp.func
-def uncovered(bare: wp.vec3, share: wp.vec3) -> wp.vec3:
-    """What a further scratch of ``share`` = area times |D|^2 leaves of what others left ``bare``."""
-    r = bare
-    for c in range(3):
-        r[c] = bare[c] * (1.0 - wp.clamp(share[c], 0.0, 1.0))
-    return r
-
-
-@wp.func
-def crowding(bare: wp.vec3, covered: wp.vec3) -> wp.vec3:
-    """What scratches that leave ``bare`` reflect of the sum ``covered`` of what each would alone: (1 - bare) / covered.
-
-    One scratch of area a takes a |D|^2 from the base, exactly; many at random leave e^{-sum} and stand in each other's
-    place. Together they and the base return 1, however many they are.
-    """
-    r = wp.vec3(1.0, 1.0, 1.0)
-    for c in range(3):
-        if covered[c] > 1.0e-4:
-            r[c] = wp.min((1.0 - bare[c]) / covered[c], 1.0)
-    return r
 
 
 @wp.func
@@ -165,15 +110,16 @@ def make_glints(key: KernelKey, transmittance):
             c_vv = (xv * xv + yv * yv) / 6.0 + soft
             along = tx * rel[0] + ty * rel[1]
             across = tx * rel[1] - ty * rel[0]
-            if across * across < _REACH * _REACH * c_vv:
+            if across * across < _REACH * _REACH * (c_vv + wp.static(float(key.glint_pairs)) * soft):
                 mean = -c_tv * across / c_vv
                 deviation = wp.sqrt(wp.max(c_tt - c_tv * c_tv / c_vv, soft))
                 held = between((-half - along - mean) / deviation, (half - along - mean) / deviation)
                 if held.part > 1.0e-5:
                     density = wp.exp(-0.5 * across * across / c_vv) / (_SQRT_TWO_PI * wp.sqrt(c_vv))
-                    if wp.static(key.glint_footprint != "gaussian"):
+                    if wp.static(key.glint_footprint in ("exact", "paper")):
                         density = ellipse_density(a, xt, xv, yt, yv, across, sigma, wp.static(method))
                     r.length = 1.0e-6 * density * held.part
+                    r.part = held.part
                     r.mean = mean + deviation * held.mean
                     r.variance = deviation * deviation * held.variance
                     # direction where the footprint sees it; the normal is that of the shading point
@@ -192,6 +138,10 @@ def make_glints(key: KernelKey, transmittance):
                     r.width = piece.width
                     r.depth = piece.depth
                     r.layer = piece.layer
+                    if wp.static(key.glint_pairs):
+                        r.at = -side * across
+                        r.low = -half - along
+                        r.high = half - along
         return r
 
     @wp.func
@@ -204,18 +154,24 @@ def make_glints(key: KernelKey, transmittance):
         frame: Frame,
         p: wp.vec3,
         wo: wp.vec3,
-        step_x: wp.vec3,
-        step_y: wp.vec3,
+        edge_x: wp.vec3,
+        edge_y: wp.vec3,
         closeness: float,
         index: wp.uint32,
         dimension: int,
         seed: wp.uint32,
     ) -> Glints:
-        """At ``s`` of a material that diffracts; ``p``: the point moved off the surface."""
+        """At ``s`` of a material that diffracts; ``p``: the point moved off the surface; ``edge_x``, ``edge_y``: of
+        the sample's footprint."""
         r = Glints()
+        step_x = edge_x
+        step_y = edge_y
+        if wp.static(key.glint_footprint == "point"):
+            step_x = wp.vec3(0.0, 0.0, 0.0)
+            step_y = wp.vec3(0.0, 0.0, 0.0)
         total = wp.vec3(0.0, 0.0, 0.0)
-        covered = wp.vec3(0.0, 0.0, 0.0)
-        bare = wp.vec3(1.0, 1.0, 1.0)
+        covered = wp.zeros(shape=wp.static(COLUMNS), dtype=float)
+        taken = wp.zeros(shape=wp.static(BINS), dtype=float)
         number = a.material[s.material]
         wave = a.waves[number]
         known = wp.zeros(shape=8, dtype=wp.vec4)
@@ -223,8 +179,14 @@ def make_glints(key: KernelKey, transmittance):
             sigma = 1.0e-6 * wave.sigma
             reach = wp.vec3(0.0, 0.0, 0.0)
             for c in range(3):
-                square = (step_x[c] * step_x[c] + step_y[c] * step_y[c]) / 6.0 + 0.5 * sigma * sigma
+                # fields reach further than their squares
+                square = (step_x[c] * step_x[c] + step_y[c] * step_y[c]) / 6.0
+                square += wp.static(1.0 if key.glint_pairs else 0.5) * sigma * sigma
                 reach[c] = _REACH * wp.sqrt(square)
+            if wp.static(key.glint_pairs):
+                mates = wp.zeros(shape=wp.static(MOST_MATES), dtype=Strand)
+                met = int(0)
+                widest = float(0.0)
             listed = wp.static(key.glint_lists) and not wp.static(key.glint_hierarchy)
             if wp.static(key.glint_lists and key.glint_hierarchy):
                 listed = True
@@ -239,9 +201,51 @@ def make_glints(key: KernelKey, transmittance):
                                 strand = strand_of(g, a, found, s, frame.n, step_x, step_y, sigma)
                                 if strand.length > 0.0:
                                     layer = a.layers[strand.layer]
-                                    share = strand.length * strand.width * depth_share(a, layer, strand.depth)
-                                    covered += share
-                                    bare = uncovered(bare, share)
+                                    take_share(a, layer, strand, strand.length * strand.width, covered, taken)
+                                    alone = int(1)
+                                    if wp.static(key.glint_pairs):
+                                        if wave.coherent == 1 and met < wp.static(MOST_MATES):
+                                            mates[met] = strand
+                                            met += 1
+                                            widest = wp.max(widest, strand.width)
+                                            alone = 0
+                                    if wp.static(not key.glint_pairs) or alone == 1:
+                                        lit = strand_light(
+                                            a,
+                                            strand,
+                                            lights,
+                                            g,
+                                            arrays,
+                                            p,
+                                            s.ng,
+                                            s.instance,
+                                            wo,
+                                            closeness,
+                                            known,
+                                            index,
+                                            dimension,
+                                            seed,
+                                        )
+                                        total += wp.vec3(lit[0], lit[1], lit[2])
+                                        r.rays += lit[3]
+            if wp.static(key.glint_hierarchy):
+                if not listed and a.bvh != wp.uint64(0):
+                    query = wp.bvh_query_aabb(a.bvh, s.p - reach, s.p + reach)
+                    other = int(0)
+                    while wp.bvh_query_next(query, other):
+                        if a.layers[a.segments[other].layer].wave == number:
+                            strand = strand_of(g, a, other, s, frame.n, step_x, step_y, sigma)
+                            if strand.length > 0.0:
+                                layer = a.layers[strand.layer]
+                                take_share(a, layer, strand, strand.length * strand.width, covered, taken)
+                                alone = int(1)
+                                if wp.static(key.glint_pairs):
+                                    if wave.coherent == 1 and met < wp.static(MOST_MATES):
+                                        mates[met] = strand
+                                        met += 1
+                                        widest = wp.max(widest, strand.width)
+                                        alone = 0
+                                if wp.static(not key.glint_pairs) or alone == 1:
                                     lit = strand_light(
                                         a,
                                         strand,
@@ -260,36 +264,31 @@ def make_glints(key: KernelKey, transmittance):
                                     )
                                     total += wp.vec3(lit[0], lit[1], lit[2])
                                     r.rays += lit[3]
-            if wp.static(key.glint_hierarchy):
-                if not listed and a.bvh != wp.uint64(0):
-                    query = wp.bvh_query_aabb(a.bvh, s.p - reach, s.p + reach)
-                    other = int(0)
-                    while wp.bvh_query_next(query, other):
-                        if a.layers[a.segments[other].layer].wave == number:
-                            strand = strand_of(g, a, other, s, frame.n, step_x, step_y, sigma)
-                            if strand.length > 0.0:
-                                layer = a.layers[strand.layer]
-                                share = strand.length * strand.width * depth_share(a, layer, strand.depth)
-                                covered += share
-                                bare = uncovered(bare, share)
-                                lit = strand_light(
-                                    a,
-                                    strand,
-                                    lights,
-                                    g,
-                                    arrays,
-                                    p,
-                                    s.ng,
-                                    s.instance,
-                                    wo,
-                                    closeness,
-                                    known,
-                                    index,
-                                    dimension,
-                                    seed,
-                                )
-                                total += wp.vec3(lit[0], lit[1], lit[2])
-                                r.rays += lit[3]
+            if wp.static(key.glint_pairs):
+                if wave.coherent == 1:
+                    take_all(covered, taken)
+                for i in range(met):
+                    for j in range(i + 1):
+                        both = paired(mates[i], mates[j], int(i == j), step_x, step_y, sigma, widest)
+                        if both.length > 0.0:
+                            lit = strand_light(
+                                a,
+                                both,
+                                lights,
+                                g,
+                                arrays,
+                                p,
+                                s.ng,
+                                s.instance,
+                                wo,
+                                closeness,
+                                known,
+                                index,
+                                dimension,
+                                seed,
+                            )
+                            total += wp.vec3(lit[0], lit[1], lit[2])
+                            r.rays += lit[3]
         if wp.static(key.glint_bands):
             for n in range(wave.first_band, wave.first_band + wave.bands):
                 band = a.bands[n]
@@ -300,9 +299,7 @@ def make_glints(key: KernelKey, transmittance):
                     if strand.pitch > 0.0:
                         # order 0 is the base's
                         area *= 1.0 - area
-                    share = area * depth_share(a, layer, strand.depth)
-                    covered += share
-                    bare = uncovered(bare, share)
+                    take_share(a, layer, strand, area, covered, taken)
                     lit = strand_light(
                         a,
                         strand,
@@ -321,8 +318,9 @@ def make_glints(key: KernelKey, transmittance):
                     )
                     total += wp.vec3(lit[0], lit[1], lit[2])
                     r.rays += lit[3]
-        r.left = bare
-        r.radiance = wp.cw_mul(total, crowding(bare, covered))
+        balance = balance_of(a, covered, taken)
+        r.left = balance.left
+        r.radiance = wp.cw_mul(total, balance.shared)
         return r
 
     return glints

@@ -26,9 +26,9 @@ class KernelKey:
         glint_lists, glint_hierarchy: pieces are found by triangle, in a hierarchy, or either by what a footprint needs.
         glint_gratings: some of them show orders.
         glint_areas: under lights with an extent. glint_method: slices, closed-form or paper.
-        glint_footprint: gaussian, exact or paper.
+        glint_footprint: gaussian, exact, paper or point.
         glint_lookup: colours under wide lights are looked up. glint_numeric: some cross-section is no
-            rectangle, or some phase depends on angles.
+            rectangle, or some phase depends on angles. glint_pairs: scratches of a footprint interfere.
         grooves: some scratches are laid out one by one. groove_crossings: they cross, bend or end;
             groove_bounces: light goes on inside; groove_handover: far away they are as statistical as the others.
         closed_form: light along the cones of scratches is integrated; cone_taps: some of those lights are not even.
@@ -69,6 +69,7 @@ class KernelKey:
     glint_areas: bool = False
     glint_lookup: bool = False
     glint_numeric: bool = False
+    glint_pairs: bool = False
     glint_method: str = "slices"
     glint_footprint: str = "gaussian"
     grooves: bool = False

@@ -82,6 +82,12 @@ def _coherent(f: Any) -> Answer:
     return _answer(found, "patterns closer than light is coherent show orders", "no grating is to be summed coherently")
 
 
+def _pairs(f: Any) -> Answer:
+    waves = [own for own in f.waves if own is not None and own.wave.summation == "coherent"]
+    found = [p.layer.label for own in waves for p in own.layers if p.layer.distribution not in REGULAR]
+    return _answer(found, "scratches under one footprint interfere", "no single scratches are to be summed coherently")
+
+
 def _areas(f: Any) -> Answer:
     if not _layers(f):
         return False, "nothing diffracts", ()
@@ -119,12 +125,14 @@ WAVE_EFFECTS: dict[str, Callable[[Any], Answer]] = {
     "diffraction.hierarchy": _hierarchy,
     "diffraction.bands": _bands,
     "diffraction.coherent": _coherent,
+    "diffraction.pairs": _pairs,
     "diffraction.areaLights": _areas,
     "diffraction.lookup": _lookup,
     "diffraction.outlines": _outlines,
     "diffraction.angles": _angles,
     "diffraction.exactFootprint": _never("Gaussian footprints; on: ellipses, integrated across the scratch"),
     "diffraction.paperFootprint": _never("Gaussian footprints; on: ellipses by Velinov 2018 Eq. 15 and 16, mended"),
+    "diffraction.pointFootprint": _never("Gaussian footprints; on: the sample's point alone, nothing antialiases"),
     "diffraction.closedForm": _never("lights in 8 slices; on: the slice xi_1 = 0 alone (Velinov 2018 Eq. 27)"),
     "diffraction.paperLights": _never("exact sine integral; on: Velinov 2018 Eq. 27 with Eq. 29"),
 }

@@ -115,10 +115,11 @@ def complaints(waves: tuple[WavePlan | None, ...]) -> tuple[str, ...]:
     for own in waves:
         for plan in own.layers if own is not None else ():
             layer = plan.layer
-            if own is not None and own.wave.summation == "coherent" and not is_grating(own.wave, layer):
+            coherent = own is not None and own.wave.summation == "coherent"
+            if own is not None and coherent and layer.distribution in REGULAR and not is_grating(own.wave, layer):
                 said.append(
-                    f"{layer.label}: only regular patterns closer than coherenceRadius are summed coherently; the "
-                    "light of these scratches adds up"
+                    f"{layer.label}: regular patterns are summed coherently where they are closer than "
+                    "coherenceRadius; the light of these scratches adds up"
                 )
             if layer.mask_texture >= 0 or layer.mask_primvar:
                 said.append(f"{layer.label}: masks are not honoured where scratches diffract")
