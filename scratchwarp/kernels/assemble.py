@@ -93,6 +93,7 @@ def kernel_key(scene: Scene, plan: EffectPlan) -> KernelKey:
         groove_crossings=on("grooves") and on("grooves.crossings"),
         groove_handover=on("grooves") and on("grooves.handover"),
         groove_bounces=on("grooves") and on("grooves.interreflection"),
+        groove_glass=on("grooves") and on("grooves.transmission") and on("base.opacity"),
         responses=tuple(n for n, r in RESPONSES.items() if on(r.effect) and (distributions or r.base)),
         closed_form=bool(distributions) and on("lights.closedForm"),
         cone_taps=bool(distributions) and on("lights.closedForm") and any(uneven(light) for light in scene.lights),
@@ -209,9 +210,10 @@ def assemble(
 
             packed_layers = [[packed_layer(p) for p in own] for own in plan.layers]
         bases = {n: (r, plan.responses[r].albedo) for n, r in enumerate(plan.bases) if r >= 0 and key.responses}
-        return material.pack(scene, packed_layers or [[] for _ in scene.materials], atlas, device, bases)
+        return material.pack(scene, packed_layers or [[] for _ in scene.materials], atlas, device, bases, glass)
 
-    described = digest(scene.materials, plan.layers, plan.bases, key)
+    glass = {n for n, own in enumerate(plan.grooves) if own is not None and own.refracts and key.groove_glass}
+    described = digest(scene.materials, plan.layers, plan.bases, key, sorted(glass))
     stuff = parts.part("layers", (described, scene.textures, explicit), layers)
     light_set, scratch_set = LightSet(), ScratchSet()
     light_set.lights = wp.array(table, dtype=Light, device=device)

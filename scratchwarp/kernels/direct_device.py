@@ -13,6 +13,7 @@ from ..lights.light_device import Light, LightSample, Span
 from ..lights.mesh_device import mesh_light_hit
 from ..lights.registry import MODELS
 from ..optics.frames_device import to_local
+from ..optics.fresnel_device import fresnel_dielectric
 from ..optics.sobol_device import sobol_2d
 from ..reflectance.profile_table_device import (
     TableArrays,
@@ -45,8 +46,9 @@ def make_transmittance(key: KernelKey, opacity_at):
 
     @wp.func
     def transmittance(
-        g: Geometry, arrays: MaterialArrays, origin: wp.vec3, direction: wp.vec3, distance: float
+        g: Geometry, arrays: MaterialArrays, origin: wp.vec3, direction: wp.vec3, distance: float, sharp: int
     ) -> float:
+        """``sharp`` 1: the light has no extent, so that no path finds it through glass; it shines straight through."""
         result = float(1.0)
         if wp.static(key.shadows):
             if wp.static(key.opacity):
@@ -61,6 +63,9 @@ def make_transmittance(key: KernelKey, opacity_at):
                         result *= 1.0 - opacity_at(arrays, m, interpolate_uv(g, s))
                         if not cut_out(m):
                             result *= m.veil
+                        if wp.static(key.groove_glass):
+                            if m.refracts == 1:
+                                result *= float(sharp) * (1.0 - fresnel_dielectric(wp.abs(wp.dot(direction, s.ng)), m.ior))
                         start = s.p - s.offset * s.ng
                         left = left - s.t
                 return result
@@ -95,7 +100,7 @@ def make_arrives(key: KernelKey, transmittance):
         result = wp.vec3(1.0, 1.0, 1.0)
         if light.shadow != 0:
             reach = wp.min(distance * 0.9999, light.shadow_distance)
-            t = transmittance(g, arrays, origin, wi, reach)
+            t = transmittance(g, arrays, origin, wi, reach, light.delta)
             result = t * result + (1.0 - t) * light.shadow_color
         return result
 

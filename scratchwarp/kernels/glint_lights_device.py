@@ -227,7 +227,7 @@ def make_strand_light(key: KernelKey, transmittance):
                             ray = wp.vec3(u, s * at, s * wp.sqrt((1.0 - at) * (1.0 + at)))
                             toward = to_world(strand.frame, ray)
                             if wp.dot(toward, ng) > 0.0:
-                                seen = transmittance(g, arrays, p, toward, light.shadow_distance)
+                                seen = transmittance(g, arrays, p, toward, light.shadow_distance, light.delta)
                     radiance = wp.static(models[j].hit)(lights.arrays, light, p, w).radiance
                     radiance = seen * radiance + (1.0 - seen) * wp.cw_mul(radiance, light.shadow_color)
                     if largest(radiance) > 0.0:
@@ -333,7 +333,7 @@ def make_strand_light(key: KernelKey, transmittance):
                                     elif wp.static(key.shadows):
                                         if light.shadow != 0:
                                             reach = wp.min(ls.distance * 0.9999, light.shadow_distance)
-                                            t = transmittance(g, arrays, p, ls.wi, reach)
+                                            t = transmittance(g, arrays, p, ls.wi, reach, light.delta)
                                             rays += 1.0
                                             for channel in range(3):
                                                 seen[channel] = t + (1.0 - t) * light.shadow_color[channel]

@@ -64,7 +64,8 @@ class GrooveSpot:
 
     ``frame``: of the surface, in the world; ``turn``, ``mirror``: its x and y in the pattern, y mirrored where mirror
     is -1; ``o``: towards the viewer, in the pattern; ``near``: 1 where grooves are to be laid out; ``smooth``:
-    roughness of facets, 0 for that of the surface.
+    roughness of facets, 0 for that of the surface; ``inside`` 1: the viewer looks from within the glass, and the frame
+    is still that of the air's side; ``scale``: of the pattern's record, 0 where there is none.
     """
 
     grooves: GrooveSet
@@ -76,12 +77,15 @@ class GrooveSpot:
     o: wp.vec3d
     near: int
     smooth: float
+    inside: int
+    scale: wp.vec2d
 
 
 @wp.struct
 class FacetStuff:
     """What facets under a footprint are made of: the surface's ``base``, scaled lobes, x axis of its anisotropy in the
-    pattern; ``own`` and ``bases`` as in ``GrooveArrays``, ``smooth`` as in ``GrooveSpot``."""
+    pattern; ``own`` and ``bases`` as in ``GrooveArrays``, ``smooth`` as in ``GrooveSpot``; ``clear``: how much of what
+    is not reflected goes through."""
 
     base: Base
     w_diffuse: float
@@ -90,3 +94,4 @@ class FacetStuff:
     x: wp.vec3
     own: wp.array(dtype=int)
     bases: wp.array(dtype=Base)
+    clear: float

@@ -3,7 +3,7 @@
 Lights without extent are exact, the mean over the footprint (``reflectance.grooves``). All else is found by paths: one
 ray from a random point of the footprint finds a facet, which is lit like any surface - by light sampling and by its own
 lobes, weighed against one another - but for the shadows of the other facets; a path that meets another facet goes on
-there until it leaves.
+there until it leaves, above or - where grooves are cut in glass - below the surface, from which it may also have come.
 """
 
 import warp as wp
@@ -12,14 +12,16 @@ from ..optics.frames_device import Frame, frame_with_tangent, to_local, to_world
 from ..optics.hash_device import pcg_hash
 from ..optics.sampling_device import sample_concentric_disk
 from ..optics.sobol_device import sobol_2d
-from ..reflectance.base_device import Base, base_eval, base_eval_pdf, base_sample
-from ..reflectance.grooves.cast_device import cast, path_of
-from ..reflectance.grooves.footprint_device import Footprint, make_footprint_mean, slope_of
+from ..reflectance.base_device import DIELECTRIC, Base, BaseSample, base_eval, base_eval_pdf, base_sample
+from ..reflectance.grooves.cast_device import path_of
+from ..reflectance.grooves.follow_device import follow
+from ..reflectance.grooves.footprint_device import make_footprint_mean, slope_of
 from ..reflectance.grooves.near_device import find_near
 from .bounce_device import Scatter
 from .direct_device import make_arrives, models_of
 from .geometry_device import Geometry, Surface, uv_motion
 from .groove_arrays_device import GROOVE_ROOM, FacetStuff, GrooveArrays, GrooveSpot
+from .groove_glass_device import chance_through, from_within, glass_base, refracted
 from .key import KernelKey
 from .lobe_device import Lobe, largest, mirrored_at, power_heuristic
 from .material_device import MaterialArrays
@@ -28,17 +30,20 @@ from .world_device import LightSet
 wp.set_module_options({"enable_backward": False})
 
 GRAZING = wp.constant(wp.float64(1e-9))
-LEVEL = wp.constant(wp.float64(1e-3))  # rays lower than this are followed as far as those
+LOW = wp.constant(wp.float64(0.05))  # lines lower than this are not followed to the plane
 SEED = wp.constant(wp.uint32(0x6A09E667))
 SMOOTH = wp.constant(0.003)  # roughness of facets that go over to tables, which take them for smooth
 
 
 @wp.struct
 class GrooveLight:
-    """Light that lights send along grooves to the viewer and in w the rays it took; where a path goes on."""
+    """Light that lights send along grooves to the viewer and in w the rays it took; where a path goes on: ``inside`` 1
+    in the glass, ``aside`` from the surface's point, to where its line crosses the plane."""
 
     received: wp.vec4
     out: Scatter
+    inside: int
+    aside: wp.vec3
 
 
 @wp.func
@@ -58,17 +63,6 @@ def out_of_pattern(spot: GrooveSpot, d: wp.vec3d) -> wp.vec3:
     x = spot.turn[0] * d[0] + spot.turn[1] * d[1]
     y = spot.mirror * (spot.turn[0] * d[1] - spot.turn[1] * d[0])
     return wp.normalize(to_world(spot.frame, wp.vec3(float(x), float(y), float(d[2]))))
-
-
-@wp.func
-def near_ray(spot: GrooveSpot, p: wp.vec3d, d: wp.vec3d, ids: wp.array(dtype=int)) -> int:
-    """The pieces that a ray from ``p`` between the lowest and the highest z may meet; how many were written."""
-    f = Footprint()
-    f.center = wp.vec2d(p[0], p[1])
-    down = wp.max(wp.abs(d[2]), LEVEL)
-    slope = wp.vec2d(d[0] / down, d[1] / down)
-    none = wp.vec2d(wp.float64(0.0), wp.float64(0.0))
-    return wp.min(find_near(spot.grooves, spot.grid, f, none, slope, ids, GROOVE_ROOM), GROOVE_ROOM)
 
 
 @wp.func
@@ -98,6 +92,18 @@ def stuff_radiance(stuff: FacetStuff, path: int, n: wp.vec3d, o: wp.vec3d, i: wp
     return wp.vec3d(wp.float64(value[0]), wp.float64(value[1]), wp.float64(value[2]))
 
 
+@wp.func
+def aside(g: Geometry, s: Surface, spot: GrooveSpot, q: wp.vec3d, d: wp.vec3d) -> wp.vec3:
+    """From the surface's point to where the line through ``q`` along ``d`` crosses the plane, or near to there."""
+    result = wp.vec3(0.0, 0.0, 0.0)
+    if spot.scale[0] != wp.float64(0.0):
+        back = -q[2] / wp.where(d[2] < wp.float64(0.0), wp.min(d[2], -LOW), wp.max(d[2], LOW))
+        u = (q[0] + back * d[0] - spot.footprint.center[0]) / spot.scale[0]
+        v = (q[1] + back * d[1] - spot.footprint.center[1]) / spot.scale[1]
+        result = float(u) * g.dpdu[s.face] + float(v) * g.dpdv[s.face]
+    return result
+
+
 def make_grooves(key: KernelKey, transmittance):
     """(spot, grooves, is_near): a footprint's place on a pattern, and what is seen there, compiled for ``key``."""
     models = models_of(key)
@@ -106,11 +112,21 @@ def make_grooves(key: KernelKey, transmittance):
 
     @wp.func
     def spot_at(
-        arrays: GrooveArrays, g: Geometry, s: Surface, frame: Frame, wo: wp.vec3, step_x: wp.vec3, step_y: wp.vec3
-    ) -> GrooveSpot:
-        """The footprint whose edges are ``step_x``, ``step_y`` as an ellipse of the same area on the pattern."""
+        arrays: GrooveArrays, g: Geometry, s: Surface, frame: Frame, wo: wp.vec3, step_x: wp.vec3, step_y: wp.vec3,
+        glass: int, resolved: int,
+    ) -> GrooveSpot:  # fmt: skip
+        """The footprint whose edges are ``step_x``, ``step_y`` as an ellipse of the same area on the pattern; bare glass
+        (``glass`` 1), too, is laid out, without a groove."""
         spot = GrooveSpot()
         number = arrays.of_face[s.face]
+        outward = frame.n
+        if wp.static(key.groove_glass):
+            if glass == 1:
+                spot.inside = 1 - s.outside
+                if spot.inside == 1:
+                    outward = -frame.n
+                if resolved == 0:
+                    number = -1
         if number >= 0:
             record = arrays.records[number]
             if record.handover == 1:
@@ -130,7 +146,8 @@ def make_grooves(key: KernelKey, transmittance):
             spot.grid.items = arrays.items
             sx = record.scale[0]
             sy = record.scale[1]
-            spot.frame = frame_with_tangent(frame.n, g.dpdu[s.face])
+            spot.scale = record.scale
+            spot.frame = frame_with_tangent(outward, g.dpdu[s.face])
             # the rotation (and mirror image) nearest to the mapping
             mx = uv_motion(g, s, spot.frame.x)
             my = uv_motion(g, s, spot.frame.y)
@@ -159,7 +176,17 @@ def make_grooves(key: KernelKey, transmittance):
                 found = find_near(spot.grooves, spot.grid, spot.footprint, slope_of(spot.o), none, ids, GROOVE_ROOM)
                 # what stands out of the plane casts shadows on bare ground, too
                 if found > 0 or spot.grooves.top > wp.float64(0.0):
-                    spot.near = 1
+                    spot.near = resolved
+        if wp.static(key.groove_glass):
+            if glass == 1:
+                spot.near = 1
+                if number < 0:
+                    spot.frame = frame_with_tangent(outward, frame.x)
+                    spot.mirror = wp.float64(1.0)
+                    spot.turn = wp.vec2d(wp.float64(1.0), wp.float64(0.0))
+                    spot.grooves.skin = wp.float64(1.0e-6)
+                    spot.grid.cell = wp.float64(1.0)
+                    spot.o = in_pattern(spot, wo)
         return spot
 
     @wp.func
@@ -188,24 +215,20 @@ def make_grooves(key: KernelKey, transmittance):
             result = bool(True)
             if q[2] < spot.grooves.top - spot.grooves.skin:
                 ids = wp.zeros(shape=GROOVE_ROOM, dtype=int)
-                count = near_ray(spot, q, i, ids)
-                slope = slope_of(i)
-                up = wp.vec3d(slope[0], slope[1], wp.float64(1.0))
                 p = q + wp.float64(2.0) * spot.grooves.skin * n
-                limit = spot.grooves.top - q[2] + spot.grooves.skin
-                dark = cast(spot.grooves, ids, count, p, up, limit, 1, 0)
+                dark = follow(spot.grooves, spot.grid, p, i, 1, 0, ids, GROOVE_ROOM)
                 result = dark.distance == wp.float64(wp.inf)
         return result
 
     @wp.func
     def facet_lit(
         g: Geometry, arrays: MaterialArrays, lights: LightSet, spot: GrooveSpot, stuff: FacetStuff, bounce: int,
-        base: Base, frame: Frame, wo: wp.vec3, q: wp.vec3d, n: wp.vec3d, p: wp.vec3, ng: wp.vec3, instance: int,
+        base: Base, share: float, frame: Frame, wo: wp.vec3, q: wp.vec3d, n: wp.vec3d, p: wp.vec3, ng: wp.vec3, instance: int,
         slices: int, index: wp.uint32, dimension: int, seed: wp.uint32,
     ) -> wp.vec4:  # fmt: skip
         """What lights send to ``wo`` (in the facet's ``frame``) by light sampling at ``q``, and in w the rays it took.
 
-        At the first facet lights without extent count with their mean over the footprint.
+        ``share``: how often a direction is drawn from the facet's lobes. At the first facet lights without extent count with their mean over the footprint.
         """
         total = wp.vec3(0.0, 0.0, 0.0)
         rays = float(0.0)
@@ -245,6 +268,8 @@ def make_grooves(key: KernelKey, transmittance):
                                     base, wo, to_local(frame, ls.wi), stuff.w_diffuse, stuff.w_specular
                                 )
                                 density = drawn.pdf
+                            if wp.static(key.groove_glass):
+                                density *= share
                             value = wp.cw_mul(terms.value, ls.radiance)
                             if ls.pdf > 0.0:
                                 value = value * (power_heuristic(ls.pdf, density) / ls.pdf)
@@ -257,10 +282,13 @@ def make_grooves(key: KernelKey, transmittance):
     @wp.func
     def grooves(
         data: GrooveArrays, g: Geometry, arrays: MaterialArrays, lights: LightSet, spot: GrooveSpot, lobe: Lobe,
-        s: Surface, p: wp.vec3, u: wp.vec2, v: float, index: wp.uint32, pair: int, dimension: int,
-        seed: wp.uint32,
+        s: Surface, lifted: wp.vec3, u: wp.vec2, v: float, index: wp.uint32, pair: int, dimension: int,
+        seed: wp.uint32, glass: int, clear: float,
     ) -> GrooveLight:  # fmt: skip
-        """What a footprint shows of the lights, and one path that leaves it; ``lobe`` is that of the surface's base."""
+        """What a footprint shows of the lights, and one path that leaves it; ``lobe`` is that of the surface's base.
+
+        ``glass`` 1: what facets do not reflect goes through, as much of it as ``clear``.
+        """
         result = GrooveLight()
         out = Scatter()
         stuff = FacetStuff()
@@ -272,56 +300,91 @@ def make_grooves(key: KernelKey, transmittance):
         stuff.own = data.own
         stuff.smooth = spot.smooth
         stuff.bases = data.bases
+        p = lifted
+        ng = s.ng
+        if wp.static(key.groove_glass):
+            if glass == 1:
+                stuff.base = glass_base(lobe.base)
+                stuff.clear = clear
+                if spot.inside == 1:
+                    p = s.p - s.offset * s.ng
+                    ng = -s.ng
         more = pcg_hash(seed ^ SEED)
         disk = sample_concentric_disk(sobol_2d(index, pair, more))
         f = spot.footprint
         at = f.center + wp.float64(disk[0]) * f.a1 + wp.float64(disk[1]) * f.a2
         above = spot.grooves.top + wp.float64(1.0e6) * spot.grooves.skin
+        if wp.static(key.groove_glass):
+            if spot.inside == 1:
+                above = spot.grooves.bottom - wp.float64(1.0e6) * spot.grooves.skin
         slope = slope_of(spot.o)
         start = wp.vec3d(at[0] + above * slope[0], at[1] + above * slope[1], above)
         d = -spot.o
         ids = wp.zeros(shape=GROOVE_ROOM, dtype=int)
-        point = Footprint()
-        point.center = at
-        none = wp.vec2d(wp.float64(0.0), wp.float64(0.0))
-        count = find_near(spot.grooves, spot.grid, point, slope, none, ids, GROOVE_ROOM)
-        count = wp.min(count, GROOVE_ROOM)
         weight = wp.vec3(lobe.scale, lobe.scale, lobe.scale)
         bounce = int(0)
         going = int(1)
         drawn = wp.vec2(u[0], u[1])
         choice = float(v)
         lights_seed = wp.uint32(seed)
+        inside = int(spot.inside)
+        hit = follow(spot.grooves, spot.grid, start, d, 0, inside, ids, GROOVE_ROOM)
         while going == 1:
             going = int(0)
-            hit = cast(spot.grooves, ids, count, start, d, wp.float64(wp.inf), 0, 0)
             if hit.distance < wp.float64(wp.inf):
                 q = start + hit.distance * d
                 n = hit.normal
                 base = facet_base(stuff, path_of(spot.grooves, hit.piece))
+                chance = float(0.0)  # of going through
+                if wp.static(key.groove_glass):
+                    if inside == 1:
+                        n = -n
+                        base = from_within(base)
                 frame = frame_with_tangent(out_of_pattern(spot, n), lobe.frame.x)
                 own_wo = to_local(frame, out_of_pattern(spot, -d))
-                received = facet_lit(
-                    g, arrays, lights, spot, stuff, bounce, base, frame, own_wo, q, n, p, s.ng, s.instance,
-                    data.slices, index, dimension, lights_seed,
-                )  # fmt: skip
-                result.received += wp.cw_mul(wp.vec4(weight[0], weight[1], weight[2], 1.0), received)
-                b = base_sample(base, own_wo, drawn, choice, stuff.w_diffuse, stuff.w_specular)
+                if wp.static(key.groove_glass):
+                    if stuff.clear > 0.0 and base.fresnel == DIELECTRIC:
+                        chance = chance_through(base, own_wo, stuff.clear, stuff.w_diffuse)
+                if inside == 0:
+                    received = facet_lit(
+                        g, arrays, lights, spot, stuff, bounce, base, 1.0 - chance, frame, own_wo, q, n, p, ng,
+                        s.instance, data.slices, index, dimension, lights_seed,
+                    )  # fmt: skip
+                    result.received += wp.cw_mul(wp.vec4(weight[0], weight[1], weight[2], 1.0), received)
+                b = BaseSample()
+                if choice >= chance:
+                    choice = (choice - chance) / (1.0 - chance)
+                    b = base_sample(base, own_wo, drawn, choice, stuff.w_diffuse, stuff.w_specular)
+                    if wp.static(key.groove_glass):
+                        b.pdf *= 1.0 - chance
+                        b.weight = b.weight / (1.0 - chance)
+                elif wp.static(key.groove_glass):
+                    gone = refracted(base, own_wo, drawn, stuff.clear, chance)
+                    b.wi = gone.wi
+                    b.weight = wp.vec3(gone.weight, gone.weight, gone.weight)
+                    b.pdf = wp.where(gone.weight > 0.0, 1.0, 0.0)
+                    b.delta = 1
+                    inside = 1 - inside
+                    n = -n
                 if b.pdf > 0.0:
                     weight = wp.cw_mul(weight, b.weight)
                     away = to_world(frame, b.wi)
                     d = in_pattern(spot, away)
                     start = q + wp.float64(2.0) * spot.grooves.skin * n
-                    count = near_ray(spot, start, d, ids)
-                    blocked = cast(spot.grooves, ids, count, start, d, wp.float64(wp.inf), 1, 0)
-                    if blocked.distance == wp.float64(wp.inf):
-                        if d[2] > wp.float64(0.0):
+                    hit = follow(spot.grooves, spot.grid, start, d, 0, inside, ids, GROOVE_ROOM)
+                    if hit.distance == wp.float64(wp.inf):
+                        if d[2] * wp.float64(1 - 2 * inside) > wp.float64(0.0):
                             out.alive = 1
                             out.direction = away
-                            out.pdf = wp.where(b.delta == 1, -1.0, b.pdf)
+                            out.pdf = wp.where(b.delta == 1 or inside == 1, -1.0, b.pdf)
                             out.weight = weight
-                            if wp.dot(away, s.ng) <= 0.0:
-                                out.direction = mirrored_at(away, s.ng)
+                            if wp.static(key.groove_glass):
+                                result.inside = inside
+                                if inside + spot.inside > 0:
+                                    result.aside = aside(g, s, spot, start, d)
+                            beyond = wp.where(inside == 1, -1.0, 1.0) * ng
+                            if wp.dot(away, beyond) <= 0.0:
+                                out.direction = mirrored_at(away, beyond)
                                 out.pdf = -1.0
                             if wp.static(key.light_multipliers):
                                 whole = base_eval_pdf(base, own_wo, b.wi, stuff.w_diffuse, stuff.w_specular)

@@ -1,7 +1,7 @@
 """Scene materials -> device materials, with their scratch layers."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -132,11 +132,12 @@ def pack(
     atlas: Any,
     device: str = "cpu",
     bases: Mapping[int, tuple[int, Color]] | None = None,
+    glass: Collection[int] = (),
 ) -> PackedMaterials:
     """Device materials; ``layers[i]`` are the packed sublayers of material i, the ones that cut deepest last.
 
     ``atlas``: the scene's textures as ``reflectance.texture.pack_textures`` puts them on the device. ``bases``:
-    material -> response that stands in for its base, and about its albedo.
+    material -> response that stands in for its base, and about its albedo. ``glass``: materials that refract.
     """
     reads: list[TextureRead] = []
     records: list[MaterialData] = []
@@ -152,6 +153,7 @@ def pack(
         else:
             _scratch_surface(m, material.surface)
         m.display_color = int(material.uses_display_color and m.response < 0)
+        m.refracts = int(number in glass)
         m.first_layer, m.layers = len(flat), len(own)
         m.veil = math.prod(1.0 - min(d.mean, 1.0) for d in own if d.keeps_diffuse == 0 and d.bvh == 0)
         flat.extend(own)

@@ -46,6 +46,7 @@ class MaterialData:
     opacity_read: int
     opacity_threshold: float
     presence: int  # 1: opacity removes specular reflection, too
+    refracts: int  # 1: what passes through is refracted by ``ior``
     ior: float
     normal_read: int
     eta: wp.vec3

@@ -94,7 +94,9 @@ def make_kernel(key: KernelKey):
             alpha = float(0.0)
             traveled = float(ray.start)  # from the camera to the last surface, along the path
             depth = int(0)
+            most = int(window.max_depth)  # surfaces; those of glass that are gone through do not count
             passes = int(0)
+            within = int(-1)  # glass of the last surface: 1 in it, 0 outside
             veil = float(1.0)  # what all that was passed through lets through
             pdf = float(-1.0)
             phi = float(0.0)
@@ -181,6 +183,9 @@ def make_kernel(key: KernelKey):
                         base = base_at(g, arrays, m, s)
                     through = float(0.0)
                     passing = float(0.0)
+                    glass = int(0)
+                    if wp.static(key.groove_glass):
+                        glass = m.refracts
                     if wp.static(key.opacity):
                         if passes < wp.static(MOST_PASSES):
                             through = 1.0 - opacity_at(arrays, m, s.uv)
@@ -191,11 +196,15 @@ def make_kernel(key: KernelKey):
                             resolved = 0
                     straight = wp.vec3(1.0, 1.0, 1.0)
                     if wp.static(key.opacity):
-                        if through > 0.0:
+                        if through > 0.0 and glass == 0:
                             straight = through * pass_through(
                                 g, scratches, m, base, s, frame, wo, step_x, step_y, u_lobe, u_more, resolved
                             )
                             passing = pass_probability(m, through, straight)
+                    if wp.static(key.groove_glass):
+                        # a path that left grooves aside of where it met them starts on the wrong side where the surface bends
+                        if glass == 1 and instance == s.instance and within == s.outside and passes < wp.static(MOST_PASSES):
+                            passing = 1.0
                     if wp.static(key.opacity) and sobol_2d(index, pair + 3, seed)[0] < passing:
                         throughput = wp.cw_mul(throughput, straight / passing)
                         veil *= luminance(straight) / passing
@@ -209,7 +218,7 @@ def make_kernel(key: KernelKey):
                         traveled += gone + s.t
                         glowing = glow(arrays, lights, m, s, origin, direction, gone + s.t, lobe, pdf, phi, depth)
                         found += wp.cw_mul(throughput, glowing)
-                        if depth < window.max_depth:
+                        if depth < most or glass == 1:
                             p = lifted(g, s)
                             kept = wp.vec3(1.0, 1.0, 1.0)
                             if wp.static(key.glints):
@@ -239,6 +248,11 @@ def make_kernel(key: KernelKey):
                                     rays += int(sparkle.rays)
                                     kept = left_of_base(base, sparkle.left)
                                     base = less_specular(base, sparkle.left)
+                            clear = float(0.0)
+                            if wp.static(key.groove_glass):
+                                if glass == 1:
+                                    clear = through
+                                    through = 0.0
                             lobe = choose(
                                 g,
                                 scratches,
@@ -258,10 +272,18 @@ def make_kernel(key: KernelKey):
                             received = wp.vec4(0.0, 0.0, 0.0, 0.0)
                             out = Scatter()
                             grooved = int(0)
+                            crossed = int(0)
+                            onward = p
+                            within = -1
                             if wp.static(key.grooves):
                                 if lobe.scratch == 0:
-                                    spot = spot_at(scratches.grooves, g, s, frame, wo, step_x, step_y)
-                                    if spot.near == 1 and resolved == 1:
+                                    spot = spot_at(scratches.grooves, g, s, frame, wo, step_x, step_y, glass, resolved)
+                                    if spot.near == 1:
+                                        if wp.static(key.groove_glass):
+                                            # clear: of what scratches leave, what is not the diffuse lobe's
+                                            whole = clear * lobe.w_diffuse
+                                            lobe.w_diffuse *= 1.0 - clear
+                                            clear = whole
                                         grooved = 1
                                         lobe.scratch = 4
                                         there = grooves(
@@ -279,9 +301,18 @@ def make_kernel(key: KernelKey):
                                             pair,
                                             pair + wp.static(OWN_PAIRS),
                                             seed,
+                                            glass,
+                                            clear,
                                         )
                                         received = there.received
                                         out = there.out
+                                        if wp.static(key.groove_glass):
+                                            crossed = wp.where(there.inside == spot.inside, 0, 1)
+                                            if glass == 1:
+                                                within = there.inside
+                                            if within == 1 or crossed == 1:
+                                                rise = wp.abs(wp.dot(out.direction, s.ng))
+                                                onward = s.p + there.aside + s.offset / wp.max(rise, 0.05) * out.direction
                             if depth == 0:
                                 first_scratch = lobe.scratch
                             instance = s.instance
@@ -304,6 +335,10 @@ def make_kernel(key: KernelKey):
                             if wp.static(key.glints):
                                 if lobe.scratch == 0:
                                     throughput = wp.cw_mul(throughput, kept)
+                            if wp.static(key.groove_glass):
+                                if depth >= most:
+                                    received = wp.vec4(0.0, 0.0, 0.0, received[3])
+                                    out.alive = wp.where(crossed == 1, out.alive, 0)
                             lit = wp.cw_mul(throughput, wp.vec3(received[0], received[1], received[2]))
                             if wp.static(key.tints):
                                 if lobe.scratch == 1:
@@ -332,7 +367,11 @@ def make_kernel(key: KernelKey):
                                 throughput = step / keep
                                 direction = out.direction
                                 start = p
-                                origin = p
+                                if wp.static(key.groove_glass):
+                                    start = onward
+                                    if crossed == 1:
+                                        most = wp.min(most + 1, window.max_depth + wp.static(MOST_PASSES))
+                                origin = start
                                 gone = 0.0
                                 reach = 1.0e10
                                 pdf = out.pdf

@@ -30,6 +30,11 @@ def _interreflection(f: Any) -> Answer:
     return bool(found), "light goes on from facet to facet" if found else "no facet that light could go on to", found
 
 
+def _transmission(f: Any) -> Answer:
+    found = _found(f, lambda own: own.refracts)
+    return bool(found), "cut in glass, which refracts" if found else "no groove is cut in anything transparent", found
+
+
 def _handover(f: Any) -> Answer:
     found = _found(f, lambda own: own.handover)
     return bool(found), "statistical from afar, laid out near by" if found else _HANDOVER, found
@@ -39,6 +44,7 @@ GROOVE_EFFECTS: dict[str, Callable[[Any], Answer]] = {
     "grooves": _grooves,
     "grooves.crossings": _crossings,
     "grooves.interreflection": _interreflection,
+    "grooves.transmission": _transmission,
     "grooves.handover": _handover,
 }
 """Effect -> its rule."""

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..scene import Layer, Material, Scene, ScratchSurface, Settings
+from ..scene import Layer, Material, PreviewSurface, Scene, ScratchSurface, Settings, TextureInput
 from .choice import LayerPlan
 from .profiles import cross_section
 
@@ -30,10 +30,11 @@ class GrooveLayerPlan:
 
 @dataclass(frozen=True, eq=False)
 class GroovePlan:
-    """What of a material is laid out; ``handover``: only where it is near."""
+    """What of a material is laid out; ``handover``: only where it is near; ``refracts``: they are cut in glass."""
 
     layers: tuple[GrooveLayerPlan, ...]
     handover: bool = False
+    refracts: bool = False
 
     @property
     def crossings(self) -> bool:
@@ -49,6 +50,15 @@ class GroovePlan:
 def laid_out(material: Material, layer: Layer) -> bool:
     """Whether a layer is rendered groove by groove."""
     return layer.model == "groove" and layer.width > 0.0
+
+
+def refracts(surface: Any) -> bool:
+    """Whether a surface is the skin of something that light goes into: a UsdPreviewSurface, no metal, whose opacity is
+    below 1 and says how much light passes rather than where the surface is."""
+    if not isinstance(surface, PreviewSurface) or surface.opacity_mode == "presence" or surface.opacity_threshold > 0.0:
+        return False
+    whole = not isinstance(surface.opacity, TextureInput) and surface.opacity >= 1.0
+    return not whole and not isinstance(surface.metallic, TextureInput) and surface.metallic == 0.0
 
 
 def _own(layer: Layer) -> Any:
@@ -130,7 +140,7 @@ def plan_grooves(
             own = [
                 GrooveLayerPlan(x, np.array(cross_section(x.profile, x).polyline(ARCS)), _own(x)) for x in near(number)
             ]
-        made.append(GroovePlan(tuple(own), handover) if own else None)
+        made.append(GroovePlan(tuple(own), handover, refracts(material.surface)) if own else None)
     return tuple(made)
 
 
