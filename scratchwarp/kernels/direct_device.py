@@ -65,7 +65,8 @@ def make_transmittance(key: KernelKey, opacity_at):
                             result *= m.veil
                         if wp.static(key.groove_glass):
                             if m.refracts == 1:
-                                result *= float(sharp) * (1.0 - fresnel_dielectric(wp.abs(wp.dot(direction, s.ng)), m.ior))
+                                cosine = wp.abs(wp.dot(direction, s.ng))
+                                result *= float(sharp) * (1.0 - fresnel_dielectric(cosine, m.ior))
                         start = s.p - s.offset * s.ng
                         left = left - s.t
                 return result

@@ -12,24 +12,23 @@ from ..optics.frames_device import Frame, frame_with_tangent, to_local, to_world
 from ..optics.hash_device import pcg_hash
 from ..optics.sampling_device import sample_concentric_disk
 from ..optics.sobol_device import sobol_2d
-from ..reflectance.base_device import DIELECTRIC, Base, BaseSample, base_eval, base_eval_pdf, base_sample
+from ..reflectance.base_device import DIELECTRIC, BaseSample, base_eval_pdf, base_sample
 from ..reflectance.grooves.cast_device import path_of
 from ..reflectance.grooves.follow_device import follow
-from ..reflectance.grooves.footprint_device import make_footprint_mean, slope_of
+from ..reflectance.grooves.footprint_device import slope_of
 from ..reflectance.grooves.near_device import find_near
 from .bounce_device import Scatter
-from .direct_device import make_arrives, models_of
 from .geometry_device import Geometry, Surface, uv_motion
 from .groove_arrays_device import GROOVE_ROOM, FacetStuff, GrooveArrays, GrooveSpot
 from .groove_glass_device import chance_through, from_within, glass_base, refracted
+from .groove_light_device import GRAZING, facet_base, in_pattern, make_facet_lit
 from .key import KernelKey
-from .lobe_device import Lobe, largest, mirrored_at, power_heuristic
+from .lobe_device import Lobe, largest, mirrored_at
 from .material_device import MaterialArrays
 from .world_device import LightSet
 
 wp.set_module_options({"enable_backward": False})
 
-GRAZING = wp.constant(wp.float64(1e-9))
 LOW = wp.constant(wp.float64(0.05))  # lines lower than this are not followed to the plane
 SEED = wp.constant(wp.uint32(0x6A09E667))
 SMOOTH = wp.constant(0.003)  # roughness of facets that go over to tables, which take them for smooth
@@ -47,17 +46,6 @@ class GrooveLight:
 
 
 @wp.func
-def in_pattern(spot: GrooveSpot, w: wp.vec3) -> wp.vec3d:
-    """A world direction in the pattern."""
-    local = to_local(spot.frame, w)
-    x = wp.float64(local[0])
-    y = spot.mirror * wp.float64(local[1])
-    return wp.normalize(
-        wp.vec3d(spot.turn[0] * x - spot.turn[1] * y, spot.turn[1] * x + spot.turn[0] * y, wp.float64(local[2]))
-    )
-
-
-@wp.func
 def out_of_pattern(spot: GrooveSpot, d: wp.vec3d) -> wp.vec3:
     """A direction in the pattern in the world."""
     x = spot.turn[0] * d[0] + spot.turn[1] * d[1]
@@ -66,57 +54,30 @@ def out_of_pattern(spot: GrooveSpot, d: wp.vec3d) -> wp.vec3:
 
 
 @wp.func
-def facet_base(stuff: FacetStuff, path: int) -> Base:
-    """What a facet of a path is made of, as rough as the surface."""
-    result = stuff.base
-    if path >= 0 and stuff.smooth > 0.0:
-        result.alpha_x = stuff.smooth
-        result.alpha_y = stuff.smooth
-    if path >= 0:
-        own = stuff.own[path]
-        if own >= 0:
-            result = stuff.bases[own]
-            if result.alpha_x < 0.0:
-                result.alpha_x = wp.where(stuff.smooth > 0.0, stuff.smooth, stuff.base.alpha_x)
-                result.alpha_y = wp.where(stuff.smooth > 0.0, stuff.smooth, stuff.base.alpha_y)
-    return result
-
-
-@wp.func
-def stuff_radiance(stuff: FacetStuff, path: int, n: wp.vec3d, o: wp.vec3d, i: wp.vec3d) -> wp.vec3d:
-    """Radiance of a facet towards ``o`` under unit perpendicular irradiance from ``i``."""
-    frame = frame_with_tangent(wp.vec3(float(n[0]), float(n[1]), float(n[2])), stuff.x)
-    wo = to_local(frame, wp.vec3(float(o[0]), float(o[1]), float(o[2])))
-    wi = to_local(frame, wp.vec3(float(i[0]), float(i[1]), float(i[2])))
-    value = base_eval(facet_base(stuff, path), wo, wi, stuff.w_diffuse, stuff.w_specular)
-    return wp.vec3d(wp.float64(value[0]), wp.float64(value[1]), wp.float64(value[2]))
-
-
-@wp.func
 def aside(g: Geometry, s: Surface, spot: GrooveSpot, q: wp.vec3d, d: wp.vec3d) -> wp.vec3:
     """From the surface's point to where the line through ``q`` along ``d`` crosses the plane, or near to there."""
     result = wp.vec3(0.0, 0.0, 0.0)
     if spot.scale[0] != wp.float64(0.0):
         back = -q[2] / wp.where(d[2] < wp.float64(0.0), wp.min(d[2], -LOW), wp.max(d[2], LOW))
-        u = (q[0] + back * d[0] - spot.footprint.center[0]) / spot.scale[0]
-        v = (q[1] + back * d[1] - spot.footprint.center[1]) / spot.scale[1]
+        u = (q[0] + back * d[0]) / spot.scale[0] - s.uv[0]
+        v = (q[1] + back * d[1]) / spot.scale[1] - s.uv[1]
         result = float(u) * g.dpdu[s.face] + float(v) * g.dpdv[s.face]
     return result
 
 
 def make_grooves(key: KernelKey, transmittance):
     """(spot, grooves, is_near): a footprint's place on a pattern, and what is seen there, compiled for ``key``."""
-    models = models_of(key)
-    linked, arrives = make_arrives(key, transmittance)
-    footprint_mean = make_footprint_mean(FacetStuff, stuff_radiance, key.groove_crossings)
+    facet_lit = make_facet_lit(key, transmittance)
 
     @wp.func
     def spot_at(
         arrays: GrooveArrays, g: Geometry, s: Surface, frame: Frame, wo: wp.vec3, step_x: wp.vec3, step_y: wp.vec3,
         glass: int, resolved: int,
     ) -> GrooveSpot:  # fmt: skip
-        """The footprint whose edges are ``step_x``, ``step_y`` as an ellipse of the same area on the pattern; bare glass
-        (``glass`` 1), too, is laid out, without a groove."""
+        """The footprint whose edges are ``step_x``, ``step_y`` as an ellipse of the same area on the pattern.
+
+        Bare glass (``glass`` 1), too, is laid out, without a groove.
+        """
         spot = GrooveSpot()
         number = arrays.of_face[s.face]
         outward = frame.n
@@ -206,78 +167,6 @@ def make_grooves(key: KernelKey, transmittance):
                 t = wp.clamp((arrays.far - ratio) / (arrays.far - arrays.near), 0.0, 1.0)
                 result = t * t * (3.0 - 2.0 * t)
         return result
-
-    @wp.func
-    def lit(spot: GrooveSpot, q: wp.vec3d, n: wp.vec3d, i: wp.vec3d) -> bool:
-        """Whether no groove stands between ``q`` on a facet and the light."""
-        result = bool(False)
-        if i[2] > GRAZING and wp.dot(n, i) > wp.float64(0.0):
-            result = bool(True)
-            if q[2] < spot.grooves.top - spot.grooves.skin:
-                ids = wp.zeros(shape=GROOVE_ROOM, dtype=int)
-                p = q + wp.float64(2.0) * spot.grooves.skin * n
-                dark = follow(spot.grooves, spot.grid, p, i, 1, 0, ids, GROOVE_ROOM)
-                result = dark.distance == wp.float64(wp.inf)
-        return result
-
-    @wp.func
-    def facet_lit(
-        g: Geometry, arrays: MaterialArrays, lights: LightSet, spot: GrooveSpot, stuff: FacetStuff, bounce: int,
-        base: Base, share: float, frame: Frame, wo: wp.vec3, q: wp.vec3d, n: wp.vec3d, p: wp.vec3, ng: wp.vec3, instance: int,
-        slices: int, index: wp.uint32, dimension: int, seed: wp.uint32,
-    ) -> wp.vec4:  # fmt: skip
-        """What lights send to ``wo`` (in the facet's ``frame``) by light sampling at ``q``, and in w the rays it took.
-
-        ``share``: how often a direction is drawn from the facet's lobes. At the first facet lights without extent count with their mean over the footprint.
-        """
-        total = wp.vec3(0.0, 0.0, 0.0)
-        rays = float(0.0)
-        for j in range(wp.static(len(models))):
-            for k in range(lights.starts[j], lights.starts[j + 1]):
-                light = lights.lights[k]
-                if linked(lights, light, instance):
-                    ls = wp.static(models[j].sample)(lights.arrays, light, p, sobol_2d(index, dimension + k, seed))
-                    if ls.pdf != 0.0 and wp.dot(ls.wi, ng) > 0.0:
-                        w_diffuse = stuff.w_diffuse
-                        w_specular = stuff.w_specular
-                        if wp.static(key.light_multipliers):
-                            w_diffuse *= light.diffuse
-                            w_specular *= light.specular
-                        i = in_pattern(spot, ls.wi)
-                        value = wp.vec3(0.0, 0.0, 0.0)
-                        exact = int(0)
-                        if bounce == 0 and light.delta == 1 and i[2] > GRAZING:
-                            ids = wp.zeros(shape=GROOVE_ROOM, dtype=int)
-                            f = spot.footprint
-                            found = find_near(
-                                spot.grooves, spot.grid, f, slope_of(spot.o), slope_of(i), ids, GROOVE_ROOM
-                            )
-                            if found <= GROOVE_ROOM:
-                                exact = 1
-                                own = stuff
-                                own.w_diffuse = w_diffuse
-                                own.w_specular = w_specular
-                                seen = footprint_mean(spot.grooves, ids, found, f, spot.o, i, own, slices, 1)
-                                r = seen.radiance
-                                value = wp.cw_mul(wp.vec3(float(r[0]), float(r[1]), float(r[2])), ls.radiance)
-                        if exact == 0 and lit(spot, q, n, i):
-                            terms = base_eval_pdf(base, wo, to_local(frame, ls.wi), w_diffuse, w_specular)
-                            density = terms.pdf
-                            if wp.static(key.light_multipliers):
-                                drawn = base_eval_pdf(
-                                    base, wo, to_local(frame, ls.wi), stuff.w_diffuse, stuff.w_specular
-                                )
-                                density = drawn.pdf
-                            if wp.static(key.groove_glass):
-                                density *= share
-                            value = wp.cw_mul(terms.value, ls.radiance)
-                            if ls.pdf > 0.0:
-                                value = value * (power_heuristic(ls.pdf, density) / ls.pdf)
-                        if largest(value) > 0.0:
-                            total += wp.cw_mul(value, arrives(g, arrays, light, p, ls.wi, ls.distance))
-                            if wp.static(key.shadows):
-                                rays += float(light.shadow)
-        return wp.vec4(total[0], total[1], total[2], rays)
 
     @wp.func
     def grooves(

@@ -30,7 +30,8 @@ class KernelKey:
         glint_lookup: colours under wide lights are looked up. glint_numeric: some cross-section is no
             rectangle, or some phase depends on angles. glint_pairs: scratches of a footprint interfere.
         grooves: some scratches are laid out one by one. groove_crossings: they cross, bend or end;
-            groove_bounces: light goes on inside; groove_glass: some are cut in what refracts; groove_handover: far away they are as statistical as the others.
+            groove_bounces: light goes on inside; groove_glass: some are cut in what refracts; groove_handover: far away
+            they are as statistical as the others.
         closed_form: light along the cones of scratches is integrated; cone_taps: some of those lights are not even.
         sample_lights, sample_cones: scratches look for the other lights by drawing from these, from their own cone.
     """

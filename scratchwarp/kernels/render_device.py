@@ -117,33 +117,15 @@ def make_kernel(key: KernelKey):
                         # nothing but lights can be found: look for geometry only where there is one to hide
                         last = 1
                         known = seen(
-                            lights,
-                            origin,
-                            direction,
-                            gone,
-                            1.0e30,
-                            instance,
-                            lobe,
-                            pdf,
-                            phi,
-                            depth,
-                        )
+                            lights, origin, direction, gone, 1.0e30, instance, lobe, pdf, phi, depth
+                        )  # fmt: skip
                 if last == 0 or known[0] + known[1] + known[2] > 0.0:
                     s = intersect(g, start, direction, reach)
                     rays += 1
                     limit = wp.where(s.face >= 0, gone + s.t, 1.0e30)
                     known = seen(
-                        lights,
-                        origin,
-                        direction,
-                        gone,
-                        limit,
-                        instance,
-                        lobe,
-                        pdf,
-                        phi,
-                        depth,
-                    )
+                        lights, origin, direction, gone, limit, instance, lobe, pdf, phi, depth
+                    )  # fmt: skip
                 found = wp.cw_mul(throughput, wp.vec3(known[0], known[1], known[2]))
                 if depth == 0 and known[3] > 0.0:
                     alpha = 1.0
@@ -202,9 +184,9 @@ def make_kernel(key: KernelKey):
                             )
                             passing = pass_probability(m, through, straight)
                     if wp.static(key.groove_glass):
-                        # a path that left grooves aside of where it met them starts on the wrong side where the surface bends
-                        if glass == 1 and instance == s.instance and within == s.outside and passes < wp.static(MOST_PASSES):
-                            passing = 1.0
+                        # what left grooves aside of where it met them starts on the wrong side where the surface bends
+                        if glass == 1 and instance == s.instance and within == s.outside:
+                            passing = wp.where(passes < wp.static(MOST_PASSES), 1.0, 0.0)
                     if wp.static(key.opacity) and sobol_2d(index, pair + 3, seed)[0] < passing:
                         throughput = wp.cw_mul(throughput, straight / passing)
                         veil *= luminance(straight) / passing
@@ -287,23 +269,9 @@ def make_kernel(key: KernelKey):
                                         grooved = 1
                                         lobe.scratch = 4
                                         there = grooves(
-                                            scratches.grooves,
-                                            g,
-                                            arrays,
-                                            lights,
-                                            spot,
-                                            lobe,
-                                            s,
-                                            p,
-                                            u_base,
-                                            u_more[1],
-                                            index,
-                                            pair,
-                                            pair + wp.static(OWN_PAIRS),
-                                            seed,
-                                            glass,
-                                            clear,
-                                        )
+                                            scratches.grooves, g, arrays, lights, spot, lobe, s, p, u_base,
+                                            u_more[1], index, pair, pair + wp.static(OWN_PAIRS), seed, glass, clear,
+                                        )  # fmt: skip
                                         received = there.received
                                         out = there.out
                                         if wp.static(key.groove_glass):
@@ -312,7 +280,8 @@ def make_kernel(key: KernelKey):
                                                 within = there.inside
                                             if within == 1 or crossed == 1:
                                                 rise = wp.abs(wp.dot(out.direction, s.ng))
-                                                onward = s.p + there.aside + s.offset / wp.max(rise, 0.05) * out.direction
+                                                onward = s.p + there.aside
+                                                onward += s.offset / wp.max(rise, 0.05) * out.direction
                             if depth == 0:
                                 first_scratch = lobe.scratch
                             instance = s.instance
