@@ -249,7 +249,9 @@ def assemble(
     groove_knobs = sorted(turned(plan.settings.knobs, "groove").items())
     cut = parts.part(
         "grooves",
-        (digest(scene.materials, key, plan.settings.spp, groove_knobs), scene.curves, scene.meshes, placed) if key.grooves else (),
+        (digest(scene.materials, key, plan.settings.spp, groove_knobs), scene.curves, scene.meshes, placed)
+        if key.grooves
+        else (),
         lambda: grooves.pack(scene, plan, key, shape, device),
     )
     scratch_set.grooves = cut.arrays
