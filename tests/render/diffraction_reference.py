@@ -10,7 +10,7 @@ covers the Gaussian) and in psi: no closed form.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import erf
+from scipy.special import erf, erfinv
 
 X1, W1 = np.polynomial.legendre.leggauss(16)
 X0, W0 = np.polynomial.hermite.hermgauss(4)
@@ -25,35 +25,37 @@ class Patch:
     uvs: np.ndarray
 
 
-def image(patch, lines, light, at, weights, size, pixels, per_pixel, sigma=60.0):
+def image(patch, lines, light, at, weights, size, pixels, per_pixel, along, sigma=60.0):
     """Radiance [pixels, pixels, 3] of the scratches alone, seen from above (orthographic along -z, y up).
 
     ``lines``: rows (u0, v0, u1, v1, width [um], depth [um]); ``light(points, frames)``: the lights as seen from there:
-    ``sphere``, ``convex`` and ``everywhere``; ``at`` [um], ``weights`` [n, 3]: wavelengths; ``size`` [m] of the view.
+    ``sphere``, ``convex`` and ``everywhere``; ``at`` [um], ``weights`` [n, 3]: wavelengths; ``size`` [m] of the view;
+    ``along``: nodes along the coherence radius.
     """
     n = pixels * per_pixel
     step = ((np.arange(n) + 0.5) / n - 0.5) * size
     x, y = np.meshgrid(step, -step)
     point, normal, face = _hit(patch, x.ravel(), y.ravel())
     total = np.zeros((n * n, 3))
+    lit = light, at, weights, sigma, along
     for f in range(len(patch.corners)):
         mine = np.flatnonzero(face == f)
         if len(mine) == 0:
             continue
+        edges = (patch.corners[f][1:] - patch.corners[f][0]).T
+        bend = (patch.normals[f][1:] - patch.normals[f][0]).T @ np.linalg.pinv(edges)
         for line in lines:
             piece = _clipped(line, patch.uvs[f], patch.corners[f])
             if piece is None:
                 continue
-            total[mine] += _strand(point[mine], normal[mine], *piece, line[4], line[5], light, at, weights, sigma)
+            total[mine] += _strand(point[mine], normal[mine], bend, *piece, *line[4:6], *lit)
         # the Gaussian of scratches on neighbouring triangles reaches over the edge
         for line in lines:
             for other in range(len(patch.corners)):
                 if other != f:
                     piece = _clipped(line, patch.uvs[other], patch.corners[other])
                     if piece is not None and _near(piece, patch.corners[f], 4.0 * sigma * 1e-6):
-                        total[mine] += _strand(
-                            point[mine], normal[mine], *piece, line[4], line[5], light, at, weights, sigma
-                        )
+                        total[mine] += _strand(point[mine], normal[mine], bend, *piece, *line[4:6], *lit)
     return total.reshape(pixels, per_pixel, pixels, per_pixel, 3).mean((1, 3))
 
 
@@ -97,29 +99,40 @@ def _clipped(line, uv, corners):
     return tuple(corners[0] + ends @ (corners[1:] - corners[0]))
 
 
-def _strand(points, normals, start, end, width, depth, light, at, weights, sigma):
-    """Radiance [n, 3] at points of one piece of a scratch."""
+def _strand(points, normals, bend, start, end, width, depth, light, at, weights, sigma, along):
+    """Radiance [n, 3] at points of one piece of a scratch. ``bend``: change of the normal by metres.
+
+    The surface curves over the coherence radius, so that the field along the scratch has a phase that is a parabola:
+    its intensity is the mean of those of flat surfaces along it, weighted by e^{-x^2 / sigma^2} (Wigner's distribution of a
+    Gaussian, exact for parabolas).
+    """
     out = np.zeros((len(points), 3))
     t = (end - start) / np.linalg.norm(end - start)
     v = np.cross(normals, t)
     v /= np.linalg.norm(v, axis=1, keepdims=True)
     u = np.cross(v, normals)
     s_b = ((start - points) * v).sum(1) * 1e6
-    h0, h1 = (((e - points) * u).sum(1) * 1e6 / sigma for e in (start, end))
-    share = 0.5 * (erf(h1) - erf(h0))
-    weight = share * np.exp(-((s_b / sigma) ** 2))
-    seen = np.flatnonzero(weight > 1e-6)
-    if len(seen) == 0:
-        return out
-    frame = np.stack([u[seen], v[seen], normals[seen]], axis=1)
-    wo = frame[:, :, 2]  # the viewer is above
+    # nodes even in the Gaussian's mass between the ends
+    m0, m1 = (erf(((e - points) * u).sum(1) * 1e6 / sigma) for e in (start, end))
+    across = np.exp(-((s_b / sigma) ** 2))
     k = 2.0 * np.pi / at
-    value = np.zeros((len(seen), len(at)))
-    for seen_light in light(points[seen], frame):
-        value += _integral(seen_light, wo, width, sigma, k, at)
     depth2 = 4.0 * np.sin(k * depth) ** 2
-    factor = 2.0 * (width / at) ** 2 * depth2
-    out[seen] = (value * factor * weight[seen, None]) @ weights
+    for x, w in zip(*np.polynomial.legendre.leggauss(along), strict=True):
+        h = erfinv(0.5 * (m0 + m1) + 0.5 * (m1 - m0) * x)
+        weight = across * 0.25 * (m1 - m0) * w
+        seen = np.flatnonzero(weight > 1e-7)
+        if len(seen) == 0:
+            continue
+        step = np.clip(1e-6 * sigma * h[seen, None], -1e-3, 1e-3) * u[seen]
+        n = normals[seen] + step @ bend.T
+        n /= np.linalg.norm(n, axis=1, keepdims=True)
+        aside = np.cross(n, t)
+        aside /= np.linalg.norm(aside, axis=1, keepdims=True)
+        frame = np.stack([np.cross(aside, n), aside, n], axis=1)
+        value = np.zeros((len(seen), len(at)))
+        for seen_light in light(points[seen] + step, frame):
+            value += _integral(seen_light, frame[:, :, 2], width, sigma, k, at)  # the viewer is above
+        out[seen] += (value * 2.0 * (width / at) ** 2 * depth2 * weight[seen, None]) @ weights
     return out
 
 
