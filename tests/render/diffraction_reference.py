@@ -103,8 +103,8 @@ def _strand(points, normals, bend, start, end, width, depth, light, at, weights,
     """Radiance [n, 3] at points of one piece of a scratch. ``bend``: change of the normal by metres.
 
     The surface curves over the coherence radius, so that the field along the scratch has a phase that is a parabola:
-    its intensity is the mean of those of flat surfaces along it, weighted by e^{-x^2 / sigma^2} (Wigner's distribution of
-    a Gaussian, exact for parabolas).
+    its intensity is the mean of those of flat surfaces along it, weighted by e^{-x^2 / sigma^2} (Wigner's
+    distribution of a Gaussian, exact for parabolas).
     """
     out = np.zeros((len(points), 3))
     t = (end - start) / np.linalg.norm(end - start)
