@@ -45,13 +45,20 @@ KILLED = """
     first = sw.render(world, sw.make_plan(world, sw.Settings(spp=32, **how)))
     plan = sw.make_plan(world, sw.Settings(spp=32, max_error=first.stats["error"] / 3.0, **how))
     whole, file = sw.render(world, plan), sys.argv[1]
+    plan_samples = whole.metadata["scratchwarp:spp"]
     kept, dice = [], random.Random(int(sys.argv[3]))
+    def written():
+        return os.stat(file).st_mtime_ns if os.path.exists(file) else 0
+
     for _ in range(5):
+        before = written()
         child = os.fork()
         if child == 0:
-            sw.render(world, plan, checkpoint=file, resume=True)
-            os._exit(0)
-        time.sleep(whole.stats["trace"] * (0.02 + 0.36 * dice.random()))
+            sw.render(world, plan, checkpoint=file, resume=True, keep=True)
+            time.sleep(1000)
+        while written() == before and sum(n for _, n in kept[-1:]) < 64 * plan_samples:
+            time.sleep(0.001)
+        time.sleep(0.3 * whole.stats["trace"] * dice.random())
         os.kill(child, signal.SIGKILL)
         killed = os.WIFSIGNALED(os.waitpid(child, 0)[1])
         canvas = Canvas(64, 64, 8)
