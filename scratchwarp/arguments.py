@@ -48,6 +48,7 @@ def add_settings(parser: argparse.ArgumentParser) -> None:
     )
     group.add_argument("--model", metavar="NAME", help="of all scratches: table, ashikhminShirley, ...")
     group.add_argument("--threads", type=int, help="worker threads [all cores]; the image does not depend on it")
+    group.add_argument("--tileSize", type=int, default=32, metavar="PIXELS", help="edge [32]")
     group.add_argument(
         "--effect", action="append", default=[], metavar="NAME=on|off", help="force an effect that explain lists"
     )
@@ -86,6 +87,7 @@ def settings(args: argparse.Namespace) -> "Settings":
             filter_width=args.filterWidth,
             crop=tuple(args.crop) if args.crop else None,
             threads=args.threads,
+            tile=args.tileSize,
             effects=dict(_effect(text) for text in args.effect),
             model=args.model,
             knobs=dict(_knob(text) for text in args.knob),
@@ -169,16 +171,6 @@ def _check_table(args: argparse.Namespace) -> None:
         profiles.Request(max_bounces=args.maxBounces, **{name: getattr(args, name) for name in names})
     except ValueError as error:
         raise UsageError(str(error)) from None
-
-
-def scheduler(address: str) -> None:
-    """UsageError on what is no address of a farm."""
-    from .render.farm import workers_of
-
-    try:
-        workers_of(address)
-    except ValueError as error:
-        raise UsageError(f"--scheduler {error}") from None
 
 
 def listed(text: str) -> tuple[str, ...]:

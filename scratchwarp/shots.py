@@ -64,6 +64,7 @@ def render(
     import scratchwarp as sw
 
     from .render import AOVS, Farm, bar, checkpoint
+    from .render.farm import workers_of
 
     told: set[str] = set()
     layers = arguments.listed(",".join(args.aov))
@@ -71,7 +72,10 @@ def render(
     if unknown:
         raise UsageError(f"--aov {unknown[0]!r} is not one of {', '.join(AOVS)}")
     if args.scheduler:
-        arguments.scheduler(args.scheduler)
+        try:
+            workers_of(args.scheduler)
+        except ValueError as error:
+            raise UsageError(f"--scheduler {error}") from None
     with Farm(args.scheduler) if args.scheduler else nullcontext() as farm:
         for shot in asked:
             scene = sw.read(args.stage, frame=shot.frame, **arguments.reading(args))

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
+from .. import __version__
 from ..kernels import KernelKey
 from ..plan import EffectPlan
 from ..profiles import Table
@@ -102,10 +103,9 @@ class Farm:
         name: str,
     ) -> "OnFarm":
         """The tracer of one image, whose data is sent to each worker now; ``name``: the hash of all that decides it."""
-        from .farm_worker import Image, packed
+        from .farm_worker import packed
 
-        self.client.register_plugin(Image(name, packed(scene, plan, tables, key, device)), name=name)
-        return OnFarm(self, plan, control, name)
+        return OnFarm(self, packed(scene, plan, tables, key, device), control, name)
 
 
 def workers_of(address: str) -> int:
@@ -119,15 +119,19 @@ def workers_of(address: str) -> int:
 
 
 class OnFarm:
-    """Tracer that sends jobs to a farm, a few more at a time than it has threads."""
+    """Tracer that sends jobs to a farm, a few more at a time than it has threads.
 
-    def __init__(self, farm: Farm, plan: EffectPlan, control: Control, name: str) -> None:
+    ``data`` goes from here to a few workers and from those to the others; where all that have it die, it goes again.
+    """
+
+    def __init__(self, farm: Farm, data: bytes, control: Control, name: str) -> None:
         from .farm_worker import machine
 
         self.warnings: tuple[str, ...] = ()
         self.numbers: Mapping[str, Any] = {}
         self.launches, self.cpu = 0, 0.0
-        self._farm, self._control, self._name = farm, control, name
+        self._farm, self._control, self._name, self._data = farm, control, name, data
+        self._scene: Any = None
         self._machines = {machine()}
 
     def __call__(self, jobs: Sequence[Job], done: Done) -> None:
@@ -141,7 +145,11 @@ class OnFarm:
         seen = looked
 
         def send(group: Sequence[Job], losses: int) -> None:
-            future = self._farm.client.submit(work, self._name, group, pure=False, priority=-losses)
+            if self._scene is None or self._scene.status != "finished":
+                self._scene = self._farm.client.scatter(self._data, broadcast=True, hash=False)
+            future = self._farm.client.submit(
+                work, self._name, self._scene, __version__, group, pure=False, priority=losses
+            )
             flying[future] = (group, losses)
             future.add_done_callback(ended.put)
 
@@ -165,7 +173,7 @@ class OnFarm:
                 group, losses = flying.pop(future)
                 if future.status == "finished":
                     self._take(group, future.result(), done)
-                elif losses < RETRIES and future.status in ("error", "lost") and _died(future):
+                elif losses < RETRIES and _died(future):
                     send(group, losses + 1)
                 else:
                     raise self._failure(future)
@@ -177,7 +185,7 @@ class OnFarm:
 
     def close(self) -> None:
         """Let the workers forget the image."""
-        self._farm.client.unregister_worker_plugin(name=self._name)
+        self._scene = None
 
     def _take(self, group: Sequence[Job], found: dict[str, Any], done: Done) -> None:
         self.launches += found["launches"]
@@ -210,7 +218,7 @@ def _died(future: Any) -> bool:
     """Whether a task was lost with its workers."""
     from distributed.scheduler import KilledWorker
 
-    return future.status == "lost" or isinstance(future.exception(), KilledWorker)
+    return future.status in ("lost", "cancelled") or isinstance(future.exception(), KilledWorker)
 
 
 def grouped(jobs: Sequence[Job], threads: int) -> list[tuple[Job, ...]]:

@@ -10,7 +10,6 @@ from types import MappingProxyType
 from typing import Any
 
 import warp as wp
-from distributed import WorkerPlugin
 
 from .. import __version__
 from ..kernels import KernelKey, assemble
@@ -25,7 +24,6 @@ from .shoot import Shoot, Sums, shooter
 from .trace import Job
 
 _lock = threading.Lock()
-_sent: dict[str, bytes] = {}
 _ready: dict[str, "_Ready"] = {}
 
 
@@ -52,35 +50,18 @@ class _Ready:
         self.launches += 1
 
 
-class Image(WorkerPlugin):
-    """Dask sends it once to each worker, and to each that comes later; ``name`` is the hash of all that decides the
-    image."""
+def work(name: str, data: bytes, version: str, jobs: Sequence[Job]) -> dict[str, Any]:
+    """The sums of each job of the image ``name``, launches, seconds of computing, and what the device data says.
 
-    def __init__(self, name: str, data: bytes) -> None:
-        self.name, self.data, self.version = name, data, __version__
-
-    def setup(self, worker: Any) -> None:
-        """Keep the data until a tile is asked for."""
-        if self.version != __version__:
-            raise ValueError(f"the worker has scratchwarp {__version__}, this machine {self.version}")
-        with _lock:
-            _sent[self.name] = self.data
-        self.data = b""  # of this worker's copy
-
-    def teardown(self, worker: Any) -> None:
-        """Forget the image."""
-        with _lock:
-            _sent.pop(self.name, None)
-            _ready.pop(self.name, None)
-
-
-def work(name: str, jobs: Sequence[Job]) -> dict[str, Any]:
-    """The sums of each job of the image ``name``, launches, seconds of computing, and what the device data says."""
+    ``data``: the image as ``packed`` left it, which Dask brings to each worker once.
+    """
+    if version != __version__:
+        raise ValueError(f"a worker has scratchwarp {__version__}, this machine {version}; install the same")
     cpu = time.thread_time()
     with _lock:  # a worker has one thread; where somebody gives it more they take turns
         if name not in _ready:
-            _ready[name] = _Ready(name, _sent[name])
-            _sent[name] = b""
+            _ready.clear()  # one image at a time: memory is bounded
+            _ready[name] = _Ready(name, data)
         ready = _ready[name]
         before = ready.launches
         sums: list[Sums] = [ready.shoot(job.tile, job.first, job.count, job.earlier) for job in jobs]
