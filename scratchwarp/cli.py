@@ -80,10 +80,10 @@ def simulate(args: Command) -> int:
     """Write the table of a profile, or those of a stage's layers, to EXR, NPZ or (as a picture) PNG."""
     import numpy as np
 
-    from . import image, profiles
+    from . import image, profiles, sections
     from .frames import is_numbered, numbered
 
-    found, store = arguments.cross_sections(args), profiles.store()
+    found, store = sections.cross_sections(args), profiles.store()
     if args.plot and len(found) > 1 and not is_numbered(args.plot):
         raise UsageError(f"--plot {args.plot} is one file for {len(found)} tables: choose one by --layer, or write ###")
     if len(found) > 1 and not is_numbered(args.out):

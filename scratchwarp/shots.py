@@ -76,7 +76,7 @@ def render(
             workers_of(args.scheduler)
         except ValueError as error:
             raise UsageError(f"--scheduler {error}") from None
-    with Farm(args.scheduler) if args.scheduler else nullcontext() as farm:
+    with Farm(args.scheduler, args.maxMemory) if args.scheduler else nullcontext() as farm:
         for shot in asked:
             scene = sw.read(args.stage, frame=shot.frame, **arguments.reading(args))
             warn(scene.warnings, told, args.quiet)

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import OpenImageIO as oiio
 
+from ..scene import Budget, TooLarge
 from .layers import HALF_MAX
 from .view import BUILTIN
 
@@ -13,7 +14,12 @@ _UNTOUCHED = ("raw", "data", "identity", "unknown", "lin_rec709_scene", "lin_rec
 _SRGB = ("sRGB", "srgb_rec709_scene", "srgb_rec709")
 
 
-def read_texture(path: str | Path, color_space: str = "auto") -> np.ndarray:
+BOMB = 10_000
+"""An image that claims more than so many bytes for each byte of its file is none: no codec of ours packs so well."""
+SMALL = 64e6
+
+
+def read_texture(path: str | Path, color_space: str = "auto", budget: Budget | None = None) -> np.ndarray:
     """Read the first image of a file that OpenImageIO knows (PNG, JPEG, EXR, HDR, TIFF and more).
 
     ``color_space``: ``sRGB``, ``raw``, a USD colour space name such as ``lin_ap1_scene``, or ``auto``: 8-bit images of
@@ -23,7 +29,8 @@ def read_texture(path: str | Path, color_space: str = "auto") -> np.ndarray:
     Returns float32 [h, w, 4], row 0 at the top, alpha not multiplied into the colour (files that store it multiplied,
     such as EXR, are left so); grey is repeated into R, G and B, a missing alpha is 1, inf becomes 65504.
     OSError when the file is missing or cannot be decoded; ValueError naming the first NaN pixel or the unknown colour
-    space.
+    space. TooLarge (a ValueError), before anything is allocated, where the image would take more than ``budget`` leaves
+    (None: most of this machine's memory) or claims a size that its file cannot hold.
     """
     path = Path(path)
     if not path.is_file():
@@ -34,6 +41,12 @@ def read_texture(path: str | Path, color_space: str = "auto") -> np.ndarray:
     if file is None:
         raise OSError(f"{path}: cannot be read as an image ({oiio.geterror().strip() or 'unknown format'})")
     spec = file.spec()
+    texels, channels = float(spec.width) * spec.height * max(spec.depth, 1), max(spec.nchannels, 1)
+    said, native = f"{spec.width} x {spec.height} pixels of {channels} channels", float(spec.image_bytes(True))
+    if native > SMALL and native > BOMB * path.stat().st_size:
+        file.close()
+        raise TooLarge(f"{path}: claims {said} in {path.stat().st_size} bytes; it is damaged or a bomb")
+    (budget or Budget()).take(16.0 * texels, path, said, besides=4.0 * channels * texels)
     pixels = file.read_image(oiio.FLOAT)
     message = file.geterror()
     file.close()

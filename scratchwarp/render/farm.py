@@ -43,7 +43,7 @@ class Farm:
     Raises ValueError on an address that is none, ImportError without the extra ``farm``, OSError when nobody answers.
     """
 
-    def __init__(self, address: str, memory: int | None = None) -> None:
+    def __init__(self, address: str, memory: float | None = None) -> None:
         self.local = address.startswith("local:")
         self.address = address
         number = workers_of(address)

@@ -15,6 +15,7 @@ Files:
     control     Control: an attribute that can be turned
     digest      a hash of records and arrays
     errors      StageError: the input is at fault
+    memory      Budget: how much of it a stage may take; TooLarge
 """
 
 from .camera import Camera
@@ -34,6 +35,7 @@ from .light import (
     SphereLight,
 )
 from .material import Material, Measured, PreviewSurface, ScratchSurface
+from .memory import Budget, TooLarge
 from .normal_map import NormalMap
 from .output import RenderOptions, RenderProduct, RenderVar
 from .settings import Settings
@@ -41,6 +43,7 @@ from .texture import Texture, TextureInput
 from .world import Scene
 
 __all__ = [
+    "Budget",
     "Camera",
     "Control",
     "Curves",
@@ -68,6 +71,7 @@ __all__ = [
     "Shaping",
     "SphereLight",
     "StageError",
+    "TooLarge",
     "Texture",
     "TextureInput",
     "Wave",

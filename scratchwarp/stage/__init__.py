@@ -4,7 +4,7 @@ Importing this package registers scratchwarp's schemas with USD, which must happ
 
 Files, from the outside in:
     read            read(path) -> Scene
-    open            a file to an open stage, or what is wrong with it
+    open            a file to an open stage, or what is wrong with it; package: what is wrong with a usdz
     reading         what every part needs to know, and the warnings
     options         render settings, products and vars
     camera          the camera

@@ -71,6 +71,7 @@ def read_curves(
     if not finite.all():
         first = int(np.argmin(finite))
         raise StageError(f"{path}: points[{first}] is {tuple(points[first].tolist())}; every coordinate must be finite")
+    reading.budget.take(400.0 * len(points), f"{reading.path}: {path}", f"curves of {len(points)} points")
     in_uv = str(reading.value(prim, "scratch:curves:space", "object")) == "uv"
     matrix = reading.world(prim) * reading.metres
     matrix[:3, 3] -= origin

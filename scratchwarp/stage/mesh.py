@@ -40,6 +40,9 @@ def read_mesh(reading: Reading, prim: Usd.Prim) -> Mesh | None:
         reading.warn(path, f"faceVertexIndices point outside 0..{len(points) - 1}; the mesh is left out")
         return None
     _check_points(path, points)
+    # points and corners with normals, tangents, uvs and colours, in float64, and their like on the way there
+    said = f"a mesh of {len(points)} points and {len(indices)} corners"
+    reading.budget.take(24.0 * len(points) + 400.0 * len(indices), f"{reading.path}: {path}", said)
 
     faces = _faces(reading, mesh, counts)
     cut = triangulate(points, counts, indices, faces)

@@ -7,8 +7,9 @@ from pathlib import Path
 
 from pxr import Sdf, Tf, Usd, UsdGeom, UsdUtils
 
-from scratchwarp.scene import StageError
+from scratchwarp.scene import StageError, TooLarge
 
+from .package import check_package
 from .reading import Warnings
 
 _FORMATS = "usd, usda, usdc or usdz"
@@ -36,7 +37,8 @@ def usd_errors(path: str | Path) -> Iterator[None]:
     except ValueError as error:
         if str(path) in str(error):
             raise
-        raise StageError(f"{path}: {error}") from None
+        kind = TooLarge if isinstance(error, TooLarge) else StageError
+        raise kind(f"{path}: {error}") from None
 
 
 def open_stage(
@@ -94,6 +96,8 @@ def _layer(path: str | Path) -> Sdf.Layer:
         raise StageError(f"{text}: no such file; give the path of a {_FORMATS} file")
     if plain and not Path(text).is_file():
         raise StageError(f"{text}: is a folder; give the path of a {_FORMATS} file")
+    if plain and text.lower().endswith(".usdz"):
+        check_package(text)
     try:
         layer = Sdf.Layer.FindOrOpen(text)
     except Tf.ErrorException as error:

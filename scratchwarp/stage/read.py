@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from pxr import Usd, UsdGeom
 
-from scratchwarp.scene import Camera, Scene, StageError
+from scratchwarp.scene import Budget, Camera, Scene, StageError
 
 from .camera import find_camera, framing_camera, read_camera
 from .complain import complain
@@ -39,6 +39,7 @@ def read(
     render_settings: str | None = None,
     default_time: bool = False,
     warn: Callable[[str], None] | None = None,
+    budget: Budget | None = None,
 ) -> Scene:
     """Read a stage at one time.
 
@@ -55,6 +56,7 @@ def read(
         mask: prim paths to which the stage is limited, as a sequence or one string.
         render_settings: path of a RenderSettings prim; None: the one that the stage names.
         warn: called with each warning of the scene, at the end.
+        budget: memory that what is read may take; None: most of this machine's. What would take more is an error.
 
     Raises StageError (a ValueError) when the input is at fault: the message names the file, or the prim and the value.
     """
@@ -62,8 +64,9 @@ def read(
     warnings = Warnings()
     with gathered_diagnostics(path, warnings), usd_errors(path):
         reading, settings = opened(
-            path, frame, purposes, load_texture, session_layer, mask, render_settings, default_time, camera, warnings
-        )
+            path, frame, purposes, load_texture, session_layer, mask, render_settings, default_time, camera, warnings,
+            budget,
+        )  # fmt: skip
         scene, _ = read_scene(reading, settings, camera)
     scene = replace(
         scene,
@@ -98,6 +101,7 @@ def opened(
     default_time: bool = False,
     camera: str | None = None,
     warnings: Warnings | None = None,
+    budget: Budget | None = None,
 ) -> tuple[Reading, StageSettings]:
     """Open a stage for reading; arguments and errors as those of ``read``."""
     unknown = sorted({*purposes} - {*ALL_PURPOSES})
@@ -117,6 +121,7 @@ def opened(
         metres=metres_per_unit(path, stage),
         warn=warnings or Warnings(),
         load_texture=load_texture,
+        budget=budget or Budget(),
     )
     settings = read_settings(reading, render_settings)
     return replace(reading, purposes=_purposes(tuple(purposes), settings)), settings
@@ -134,7 +139,10 @@ def read_scene(
     ``kept``: of an earlier reading, where no mesh has changed or moved since. ``origin``: the scene's [m], where it
     shall not be the camera's position.
     """
-    reading = replace(reading, primvars=layer_primvars(reading.stage))
+    if kept is None:
+        reading.budget.taken = 0.0
+    budget = reading.budget if kept is None else reading.budget.fresh()  # what is kept was counted
+    reading = replace(reading, primvars=layer_primvars(reading.stage), budget=budget)
     places = placed_prims(reading)
     if kept is None or not reading.primvars <= kept.primvars:
         textures = Textures(reading) if kept is None else kept.textures

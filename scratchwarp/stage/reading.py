@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from pxr import Tf, Usd, UsdGeom
 
-from scratchwarp.scene import StageError
+from scratchwarp.scene import Budget, StageError
 
 TextureLoader = Callable[[str, str], np.ndarray]
 """(path, colour space) -> float32 [h, w, 4], row 0 at the top, linear Rec.709 or raw."""
@@ -49,6 +49,7 @@ class Reading:
         warn: ``warn(prim path, sentence)``.
         load_texture: decodes an image file; None: textures give their fallback.
         primvars: names of primvars that scratch layers read.
+        budget: memory that what is read may take.
         xforms: local-to-world matrices at ``time``, cached.
     """
 
@@ -60,6 +61,7 @@ class Reading:
     warn: Warnings = field(default_factory=Warnings)
     load_texture: TextureLoader | None = None
     primvars: frozenset[str] = frozenset()
+    budget: Budget = field(default_factory=Budget)
     xforms: UsdGeom.XformCache = field(init=False)
 
     def __post_init__(self) -> None:

@@ -8,8 +8,9 @@ from pathlib import Path, PurePosixPath
 
 from pxr import Sdf
 
-from scratchwarp.scene import Texture
+from scratchwarp.scene import Texture, TooLarge
 
+from .package import check_package
 from .reading import Reading
 
 
@@ -48,6 +49,8 @@ class Textures:
         try:
             with _file(path) as file:
                 record = Texture(path, reading.load_texture(file, space))
+        except TooLarge as error:
+            raise TooLarge(f"{where}: {error}") from None
         except (OSError, ValueError, KeyError) as error:
             reading.warn(where, f"{error}; its fallback is used")
             return -1
@@ -63,7 +66,8 @@ def _file(path: str) -> Iterator[str]:
         return
     package, _, inner = path[:-1].partition("[")
     with tempfile.TemporaryDirectory() as folder:
-        copy = Path(folder, PurePosixPath(inner).name)
+        check_package(package)
+        copy = Path(folder, "texture").with_suffix(PurePosixPath(inner).suffix)
         with zipfile.ZipFile(package) as archive:
             copy.write_bytes(archive.read(inner))
         yield str(copy)

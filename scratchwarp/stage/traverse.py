@@ -98,6 +98,7 @@ def _instancer(
     prototypes.update(t for t in targets if not t.HasPrefix(path))
     chosen = np.asarray(instancer.GetProtoIndicesAttr().Get(reading.time) or [], np.int64)
     mask = np.asarray(instancer.ComputeMaskAtTime(reading.time), bool)
+    reading.budget.take(2000.0 * len(chosen), f"{reading.path}: {path}", f"{len(chosen)} instances")
     # With the prototypes' own transforms USD gives up on any index that is out of range; they are applied below.
     own = UsdGeom.PointInstancer.ExcludeProtoXform
     matrices = np.asarray(instancer.ComputeInstanceTransformsAtTime(reading.time, reading.time, own), np.float64)

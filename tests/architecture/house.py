@@ -29,6 +29,7 @@ ROOMS = (
     "pipelines",
     "viewers",
     "arguments",
+    "sections",
     "shots",
     "cli",
     "__main__",

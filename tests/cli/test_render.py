@@ -35,6 +35,7 @@ def test_what_usdrecord_calls_it(renderer, tmp_path):
         "session_layer": "s.usda",
         "render_settings": "/R/S",
         "default_time": False,
+        "max_memory": None,
     }
     assert status("render", "a.usda", tmp_path / "a.exr", "--defaultTime") == 0
     assert renderer.reads[1][1]["default_time"] and renderer.reads[1][1]["frame"] is None
@@ -88,6 +89,7 @@ def test_chosen_layers(renderer, tmp_path):
         (["render", "a.usda"], "OUT"),
         (["render", "a.usda", "a.exr", "--sp", "3"], "--sp"),
         (["render", "a.usda", "a.exr", "--spp", "many"], "many"),
+        (["render", "a.usda", "a.exr", "--max-memory", "lots"], "no size such as"),
         (["render", "a.usda", "a.exr", "--spp", "-3"], "spp is -3"),
         (["render", "a.usda", "a.exr", "--maxError", "nan"], "max_error is nan"),
         (["render", "a.usda", "a.exr", "--crop", "0.5", "0.5", "0", "1"], "crop"),
