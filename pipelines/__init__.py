@@ -6,6 +6,9 @@ Files:
     preset_gallery            writes a stage and a picture of each preset
     bake                      keeps simulated tables beside a stage
     compare, contact_sheet    show stages and images beside one another; pictures renders and arranges them
+    export                    the look for other renderers: baked_look lays materials out on texels, export_preview,
+                              export_materialx and export_mitsuba (with mitsuba_lights) write them, texture_files keeps
+                              maps, mitsuba_run renders; folder mitsuba_plugin goes along with exported scenes
     publish                   makes an asset folder: asset_folder lays it out, gather copies what it needs
     turntable, zoom           move the camera, by camera_moves
     validate                  checks a stage in all its variants

@@ -1,7 +1,7 @@
 """The folder of a published asset, as the USD working group lays it out.
 
     <name>.usda          entry: default prim with kind, assetInfo, extents hint, and a payload
-    contents/            the stage and every file it needs, by relative paths
+    contents/            the stage and every file it needs, by relative paths; baked surfaces over it
     thumbnails/<name>.*  picture of the asset
     <name>.usdz          all of it in one file
     manifest.json        path, size and SHA-256 of every other file
@@ -31,26 +31,29 @@ from .gather import gather
 MANIFEST = "manifest.json"
 _BEGINNING = struct.pack("<2H", 0, 0x21)  # of the times that a zip file can say
 Draw = Callable[[Path, Path], None]
+Bake = Callable[[Path], tuple[Path, list[str]]]
 
 
 @contextmanager
-def replaced(target: Path, source: str | Path) -> Iterator[Path]:
+def replaced(target: Path, source: str | Path, mark: str = MANIFEST) -> Iterator[Path]:
     """A new folder that takes the place of ``target`` when the block ends well, and is removed when it raises.
 
-    ValueError where ``target`` holds files that were not published, or files of the stage ``source``; OSError where
-    it cannot be written.
+    ``mark``: file by which a folder is known that was made so. ValueError where ``target`` holds other files, or files
+    of the stage ``source``; OSError where it cannot be written.
     """
     target = target.resolve()
     stage = open_stage(source)
     used = [Path(layer.realPath).resolve() for layer in stage.GetUsedLayers() if layer.realPath]
     inside = [path for path in used if path.is_relative_to(target)]
     if inside:
-        raise ValueError(f"{target}: holds {inside[0]}, which is published; choose another folder")
-    if target.exists() and (not target.is_dir() or (any(target.iterdir()) and not (target / MANIFEST).is_file())):
-        raise ValueError(f"{target}: is there and was not published; choose another folder, or remove it")
+        what = "published" if mark == MANIFEST else "exported"
+        raise ValueError(f"{target}: holds {inside[0]}, which is {what}; choose another folder")
+    if target.exists() and (not target.is_dir() or (any(target.iterdir()) and not (target / mark).is_file())):
+        what = "published" if mark == MANIFEST else "exported"
+        raise ValueError(f"{target}: is there and was not {what}; choose another folder, or remove it")
     target.parent.mkdir(parents=True, exist_ok=True)
-    mark = uuid.uuid4().hex[:12]
-    draft, old = (target.with_name(f".{target.name}.{mark}.{what}") for what in ("new", "old"))
+    name = uuid.uuid4().hex[:12]
+    draft, old = (target.with_name(f".{target.name}.{name}.{what}") for what in ("new", "old"))
     draft.mkdir()
     try:
         yield draft
@@ -75,17 +78,20 @@ def thumbnail_file(path: str | Path) -> Draw:
 
 
 def build(
-    source: str | Path, folder: Path, name: str, version: str, draw: Draw | None, usdz: bool = True
+    source: str | Path, folder: Path, name: str, version: str, draw: Draw | None, usdz: bool = True,
+    bake: Bake | None = None,
 ) -> dict[str, Any]:
     """Fill ``folder`` with the asset ``name`` made of the stage ``source`` and return its manifest.
 
     ``draw(entry, target)`` writes the thumbnail ``target``, a PNG, or a file of its name with another suffix.
+    ``bake(payload)`` lays baked surfaces over the copy of the stage and returns the layer to take in its place, and
+    the materials that have some.
 
     Raises:
         ValueError: a name that is none, no default prim, something that the default prim needs
             outside of it, or new faults.
         OSError: a file cannot be written.
-    """
+    """  # fmt: skip
     usd_schemas.register()
     if not Tf.IsValidIdentifier(name):
         raise ValueError(f"name {name!r} has other characters than letters, digits and _, or begins with a digit")
@@ -94,6 +100,9 @@ def build(
     if not root:
         raise ValueError(f"{source}: has no default prim, which is what is published; author defaultPrim")
     payload, missing = gather(Path(source), folder / "contents")
+    baked: list[str] = []
+    if bake:
+        payload, baked = bake(payload)
     entry = folder / f"{name}.usda"
     _write_entry(stage, payload, entry, name, version)
     known = {_nameless(finding) for finding in validate_stage(stage)}
@@ -109,7 +118,7 @@ def build(
         if not (packed or missing) or not zipfile.is_zipfile(package):
             raise ValueError(f"{source}: cannot be packed into a usdz; --no-usdz leaves it out")
         _undated(package)
-    return _write_manifest(folder, name, version, missing)
+    return _write_manifest(folder, name, version, missing, baked)
 
 
 def _write_entry(stage: Usd.Stage, payload: Path, entry: Path, name: str, version: str) -> None:
@@ -177,13 +186,16 @@ def _undated(package: Path) -> None:
     package.write_bytes(data)
 
 
-def _write_manifest(folder: Path, name: str, version: str, missing: Sequence[str]) -> dict[str, Any]:
+def _write_manifest(
+    folder: Path, name: str, version: str, missing: Sequence[str], baked: Sequence[str]
+) -> dict[str, Any]:
     rows = []
     for path in sorted(p for p in folder.rglob("*") if p.is_file()):
         digest = hashlib.sha256(path.read_bytes()).hexdigest()
         rows.append({"path": path.relative_to(folder).as_posix(), "bytes": path.stat().st_size, "sha256": digest})
     manifest: dict[str, Any] = {"name": name, "version": version, "entry": f"{name}.usda", "files": rows}
     manifest["missing"] = sorted(missing)
+    manifest["baked"] = sorted(baked)
     (folder / MANIFEST).write_text(json.dumps(manifest, indent=1) + "\n", encoding="utf-8")
     return manifest
 

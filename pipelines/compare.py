@@ -24,7 +24,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def measure(reference: Array, other: Array, boost: float = 8.0) -> tuple[dict[str, float | None], dict]:
-    """Numbers (relMSE, mean and largest absolute difference, FLIP or None) and pictures (name -> linear [h, w, 3])."""
+    """Numbers (relMSE, relRMSE = root mean square difference over root mean square of the reference, mean and largest
+    absolute difference, FLIP or None) and pictures (name -> linear [h, w, 3])."""
     import numpy as np
 
     from scratchwarp.study import differences
@@ -33,7 +34,14 @@ def measure(reference: Array, other: Array, boost: float = 8.0) -> tuple[dict[st
     error = differences.relative_mse(reference, other)
     found = differences.flip(reference, other)
     assert off is not None  # relative_mse has checked the sizes
-    numbers = {"relMSE": error, "mean": float(off.mean()), "largest": float(off.max()), "flip": found and found[1]}
+    whole = max(float(np.sqrt(np.mean(reference.astype(np.float64) ** 2))), 1e-30)
+    numbers = {
+        "relMSE": error,
+        "relRMSE": float(np.sqrt(np.mean(off**2))) / whole,
+        "mean": float(off.mean()),
+        "largest": float(off.max()),
+        "flip": found and found[1],
+    }
     shown = {"difference": differences.boosted(reference, other, boost)}
     if found:
         shown["flip"] = found[0]

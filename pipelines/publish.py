@@ -17,6 +17,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--thumbnail", metavar="FILE", help="PNG or JPEG [rendered]")
     parser.add_argument("--no-thumbnail", action="store_true", help="none")
     parser.add_argument("--no-usdz", action="store_true", help="no package")
+    parser.add_argument("--no-preview", action="store_true", help="no baked UsdPreviewSurface looks of scratches")
+    parser.add_argument("--texels", type=int, default=512, help="of the longer side of baked maps [512]")
     parser.add_argument("--imageWidth", "-w", type=int, default=256, metavar="PIXELS", help="of the thumbnail [256]")
     parser.add_argument("--spp", type=int, default=16, help="samples a pixel of the thumbnail [16]")
 
@@ -43,11 +45,30 @@ def run(options: argparse.Namespace) -> Report:
 
             image.write_layers({"color": pictures.picture(entry, options)}, target)
 
+    if not 1 <= options.texels <= 16384:
+        raise WrongUsage(f"--texels {options.texels} is not in [1, 16384]")
+    notes: list[str] = []
+
+    def bake(payload: Path) -> tuple[Path, list[str]]:
+        import scratchwarp as sw
+
+        from .export_preview import write
+        from .put_on import VARIANT_SET
+
+        if not any(material.layers for material in sw.read(payload).materials):
+            return payload, []
+        over = payload.with_name(f"{payload.stem}_preview.usda")
+        records, said = write(payload, over, sw.Settings(), options.texels, variants=VARIANT_SET)
+        notes.extend(said)
+        return over if records else payload, [row["material"] for row in records]
+
     heard = Warnings()  # missing files are in the manifest, once
     with gathered_diagnostics(options.stage, heard), replaced(Path(options.out), options.stage) as folder:
-        manifest = build(options.stage, folder, name, options.assetVersion, drawn, not options.no_usdz)
+        look = None if options.no_preview else bake
+        manifest = build(options.stage, folder, name, options.assetVersion, drawn, not options.no_usdz, look)
     lines = [f"{options.out}/{row['path']}  {row['bytes']} bytes" for row in manifest["files"]]
     lines += [f"warning: {path} cannot be found and is left out" for path in manifest["missing"]]
+    lines += [f"warning: {note}" for note in notes]
     return Report({"out": options.out, **manifest}, tuple(lines))
 
 

@@ -67,9 +67,11 @@ def _smooth_tangents(triangles: Array, uv: Array, dpdu: Array, area: Array) -> A
     return sums[group].reshape(-1, 3, 3)
 
 
-def _instance_arrays(
+def instance_arrays(
     mesh: Mesh, instance: Instance, materials: tuple[Material, ...], directed: bool
 ) -> dict[str, Array]:
+    """World triangles of one instance: world, normals [m, 3, 3], uv [m, 3, 2], dpdu, dpdv [m, 3], material [m], scale
+    [2] (micrometres a unit of u and of v), and tangents, where ``directed``, and colors, where the mesh has them."""
     matrix = instance.transform
     linear = matrix[:3, :3]
     points = mesh.points @ linear.T + matrix[:3, 3]
@@ -141,7 +143,7 @@ def pack(
     for number, instance in enumerate(scene.instances):
         mesh = scene.meshes[instance.mesh]
         if len(mesh.triangles):
-            part = _instance_arrays(mesh, instance, scene.materials, directed)
+            part = instance_arrays(mesh, instance, scene.materials, directed)
             m = len(mesh.triangles)
             part["instance"] = np.full(m, number, np.int32)
             part["light"] = np.full(m, emitters.get(number, -1), np.int32)
