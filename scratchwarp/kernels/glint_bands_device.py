@@ -22,6 +22,7 @@ _vec3x = wp.types.vector(length=3, dtype=float)
 _NODES = wp.constant(_vec3x(0.112701665, 0.5, 0.887298335))
 _WEIGHTS = wp.constant(_vec3x(0.277777778, 0.444444444, 0.277777778))
 _PANEL = wp.constant(0.04)  # um of wavelength for three nodes
+_LONGEST_PITCH = wp.constant(1000.0)  # um: orders closer than any eye tells apart, thousands of them
 _SQRT_TWO_PI = wp.constant(2.5066282746)
 _SQRT_PI = wp.constant(1.7724538509)
 
@@ -126,7 +127,7 @@ def band_strand(
                 r.width = 1.0e6 * float(band.width) / a_rate
                 r.depth = 1.0e6 * band.depth / a_rate
             r.layer = band.layer
-            if band.coherent == 1:
+            if band.coherent == 1 and pitch <= wp.min(1.0e6 * sigma, _LONGEST_PITCH):
                 r.pitch = pitch
     return r
 

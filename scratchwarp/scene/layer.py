@@ -175,6 +175,12 @@ class Wave:
     def __post_init__(self) -> None:
         all_finite("ScratchWaveAPI", self)
         in_range("ScratchWaveAPI", "coherenceRadius", self.coherence_radius, 1e-6, 1e9)
+        in_range("ScratchWaveAPI", "samples", self.samples, 1, 1024)
+        in_range("ScratchWaveAPI", "roughness", self.roughness, 0.0, 1e12)
+        for wavelength in self.wavelength_range:
+            in_range("ScratchWaveAPI", "wavelengthRange", wavelength, 100.0, 20000.0)
+        if not self.wavelength_range[0] < self.wavelength_range[1]:
+            raise ValueError(f"ScratchWaveAPI: wavelengthRange is {self.wavelength_range}; the first must be smaller")
         if self.ior is not None:
             put(self, ior=freeze("ScratchWaveAPI", "ior", self.ior, (None, 3)))
 
