@@ -7,7 +7,9 @@ from ..reflectance.diffraction.response_device import depth_response, sinc2
 from .glint_arrays_device import GlintArrays, Strand, WaveLayer
 
 _vec5 = wp.types.vector(length=5, dtype=float)
-_MOST_PANELS = wp.constant(256.0)  # beyond, fringes are so fine that their mean is taken at 1280 places
+# Beyond so many cycles fringes are so fine that their mean is taken, at 160 places of each slice and wavelength.
+_MOST_PANELS = wp.constant(256.0)
+_FEW_PANELS = wp.constant(32)
 # Gauss-Legendre over [0, 1].
 _FIVE = wp.constant(_vec5(0.0469100770, 0.2307653449, 0.5, 0.7692346551, 0.9530899230))
 _FIVE_WEIGHTS = wp.constant(_vec5(0.1184634425, 0.2393143352, 0.2844444444, 0.2393143352, 0.1184634425))
@@ -40,7 +42,9 @@ def across_numeric(
     if high > low:
         s2 = wp.max((1.0 - u) * (1.0 + u), 0.0)
         cycles = (strand.width + 2.0 * strand.depth) / wavelength * (high - low)
-        panels = int(wp.clamp(wp.ceil(cycles), 1.0, _MOST_PANELS))
+        panels = int(wp.max(wp.ceil(cycles), 1.0))
+        if cycles > _MOST_PANELS:
+            panels = _FEW_PANELS
         width = (high - low) / float(panels)
         for i in range(panels):
             for j in range(5):

@@ -15,7 +15,7 @@ from .knobs import turned_tables
 from .layers import plan_layers, reflector
 from .models import base_responses
 from .resolve import resolve
-from .waves import complaints, diffracts, plan_waves
+from .waves import complaints, diffracts, plan_waves, wide_ones
 
 Layers = tuple[tuple[LayerPlan, ...], ...]
 
@@ -56,7 +56,7 @@ def make_plan(scene: Scene, settings: Settings | None = None, earlier: EffectPla
         )
         tables = turned_tables(tables, decided.knobs, summed)
         waves = plan_waves(scene, waved, reflector, decided.model, decided.knobs)
-        warnings += complaints(waves)
+        warnings += complaints(waves) + wide_ones(scene.materials)
 
         def near(number: int) -> list[Layer]:
             wanted = forced.get("grooves.handover", False) and forced.get("grooves", True)

@@ -1,6 +1,6 @@
 """Which layers diffract, and what they reflect by at each wavelength."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any
@@ -15,6 +15,8 @@ from ..scene.knob import Value
 from .knobs import turned_wave
 from .profiles import cross_section
 
+# Coherence radii beyond which a scratch is too wide to diffract by itself.
+WIDE = 4.0
 # Patterns of regular pitch have a closed form; all others become explicit scratches.
 REGULAR = ("linear", "concentric", "spiral", "crosshatch")
 
@@ -40,8 +42,26 @@ class WavePlan:
 
 
 def diffracts(material: Material, layer: Layer) -> bool:
-    """Whether a layer is rendered by wave optics: ScratchWaveAPI on the Material and model auto or diffraction."""
-    return material.wave is not None and layer.model in ("auto", "diffraction")
+    """Whether a layer is rendered by wave optics: ScratchWaveAPI on the Material and model diffraction, or auto where
+    scratches are not too wide for it."""
+    wave = material.wave
+    return wave is not None and (layer.model == "diffraction" or (layer.model == "auto" and not too_wide(wave, layer)))
+
+
+def too_wide(wave: Wave, layer: Layer) -> bool:
+    """Whether scratches are far wider than light is coherent: nothing that interferes across them is left."""
+    return layer.space == "surface" and layer.width > WIDE * wave.coherence_radius
+
+
+def wide_ones(materials: Sequence[Material]) -> tuple[str, ...]:
+    """What ``too_wide`` keeps from diffracting, one sentence each."""
+    return tuple(
+        f"{layer.label}: scratches of {layer.width:g} um are far wider than light is coherent, "
+        f"{m.wave.coherence_radius:g} um; tables render them, model diffraction would diffract them"
+        for m in materials
+        for layer in m.layers
+        if m.wave is not None and layer.model == "auto" and too_wide(m.wave, layer)
+    )
 
 
 def is_grating(wave: Wave, layer: Layer) -> bool:

@@ -3,6 +3,8 @@
 ``stage(rng)`` puts together geometry, lights, materials, a camera and render settings; every kind of each is met.
 """
 
+import re
+
 import numpy as np
 
 HEADER = '#usda 1.0\n(\n    metersPerUnit = 1\n    upAxis = "Y"\n    startTimeCode = 1\n    endTimeCode = 4\n)\n'
@@ -234,7 +236,7 @@ def layer(rng, name, curves):
         made.append(f"rel scratch:layer:{name}:curves = </lines>")
         curves.append(CURVES)
     if model == "diffraction":
-        made = [m.replace("= 900", "= 1").replace("= 4000", "= 3") for m in made]
+        made = [re.sub("(?<=:width = )\\d+", "3", re.sub("(?<=:depth = )\\d+", "1", m)) for m in made]
     extra = rng.integers(8)
     if extra == 0:
         made.append(f'uniform token scratch:layer:{name}:maskPrimvar = "wear"')

@@ -1,9 +1,14 @@
 """Diffraction at sizes and wavelengths from nothing to far too much: finite, never negative, no more than all light."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from scratchwarp import diffraction
+import scratchwarp as sw
+from scratchwarp import diffraction, scene
+
+from ..render import scenes
 
 SIZES = np.array([0.0, 1e-9, 1e-3, 1.0, 1e3, 1e6])
 WAVELENGTHS = np.array([1e-3, 1.0, 380.0, 780.0, 1e6, 1e12])
@@ -36,6 +41,18 @@ def test_lights_at_any_size_and_wavelength(method):
 def test_no_wavelength_is_said(bad):
     with pytest.raises(ValueError, match="wavelength"):
         diffraction.brdf(UP, UP, diffraction.Scratch(), bad)
+
+
+@pytest.mark.parametrize(
+    ("width", "model", "diffracts"), [(3.0, "auto", True), (3e4, "auto", False), (3e4, "diffraction", True)]
+)
+def test_scratches_far_wider_than_light_is_coherent_are_tables(width, model, diffracts):
+    """Unless asked for: their fringes are too many to integrate, and no light shows them."""
+    layered = scenes.scratched(width=width, depth=1.0, model=model)
+    world = scenes.scene([scenes.sphere(4, 8)], [replace(layered, wave=scene.Wave())], [scenes.dome()])
+    plan = sw.make_plan(world)
+    assert plan.on("diffraction") == diffracts and plan.on("scratches.table") == (not diffracts)
+    assert any("wider than light is coherent" in w for w in plan.warnings) == (not diffracts)
 
 
 @pytest.mark.parametrize("sigma", [1e-6, 1e-3, 1e3, 1e9])
