@@ -15,9 +15,11 @@ class UsageError(Exception):
     """The command line asks for something that does not exist; exit status 2."""
 
 
-def add_stage(parser: argparse.ArgumentParser) -> None:
+def add_stage(parser: argparse.ArgumentParser, optional: bool = False) -> None:
     """STAGE and which part of it to read."""
-    parser.add_argument("stage", metavar="STAGE", help="USD file: .usda, .usdc, .usd or .usdz")
+    parser.add_argument(
+        "stage", metavar="STAGE", nargs="?" if optional else None, help="USD file: .usda, .usdc, .usd or .usdz"
+    )
     group = parser.add_argument_group("what is read")
     group.add_argument("--camera", "-cam", metavar="NAME", help="camera prim, by path or name")
     group.add_argument(
@@ -160,6 +162,12 @@ def study(args: argparse.Namespace) -> "tuple[tuple[str, ...] | None, float | No
     for name in names:
         if name not in KNOBS:
             raise UsageError(f"--knobs {name!r} is not one of {', '.join(KNOBS)}")
+    if args.calibrate:
+        if args.stage:
+            raise UsageError("--calibrate renders stages of its own; leave out STAGE and OUT_DIR")
+        return None, None
+    if not args.stage or not args.out:
+        raise UsageError("STAGE and OUT_DIR are needed, or --calibrate alone")
     if args.repeats < 1:
         raise UsageError(f"--repeats {args.repeats} is not 1 or more")
     if not args.budget:
@@ -184,7 +192,8 @@ _EXAMPLES = {
   scratchwarp render ball.usda ball.exr --aov depth,normal --effect scratches.interreflection=off --json
   scratchwarp render ball.usda ball.exr --spp 4096 --checkpoint ball.part --resume
   scratchwarp render shot.usda shot.####.exr --frames 1:240 --scheduler tcp://farm:8786""",
-    "explain": "scratchwarp explain ball.usda\n  scratchwarp explain ball.usda --effect shadows=off --json",
+    "explain": "scratchwarp explain ball.usda\n  scratchwarp explain ball.usda --cost --maxError 0.01\n"
+    "  scratchwarp explain ball.usda --effect shadows=off --json",
     "simulate": """scratchwarp simulate quartic quartic.exr --depth 0.4 --plot quartic.png
   scratchwarp simulate groove.csv groove.png --metal gold --resolution 128
   scratchwarp simulate ball.usda tables.##.npz""",
@@ -193,7 +202,8 @@ _EXAMPLES = {
     "  scratchwarp view ball.usda --profile hairlines\n  scratchwarp view quartic\n  scratchwarp view lobe\n"
     "  scratchwarp view cloth.bin --screenshot cloth.png",
     "study": "scratchwarp study ball.usda ball_study --budget 10m\n"
-    "  scratchwarp study ball.usda out --knobs spp,tables.resolution,tables.rays -w 96 --repeats 5",
+    "  scratchwarp study ball.usda out --knobs spp,tables.resolution,tables.rays -w 96 --repeats 5\n"
+    "  scratchwarp study --calibrate   # this machine's prices, which explain --cost and --maxError go by",
     "fit": "scratchwarp fit cloth.bin cloth.usda --report cloth\n  scratchwarp fit paint.binary paint.usda --modes 1\n"
     "  scratchwarp fit kettle.usda far.usda --material brass   # scratches seen from far away",
     "scratchmap": "scratchwarp scratchmap hairlines.png --direction 0 --spread 4 --density 900\n"
@@ -249,11 +259,13 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument(
         "--scheduler", metavar="ADDRESS", help="render on a Dask farm: tcp://HOST:PORT, or local:N workers here"
     )
+    made.add_argument("--cost", action="store_true", help="say what it was predicted to take, and what it took")
     add_settings(made)
     add_color(made)
 
     made = command("explain", "say which effects a stage calls for, and why", json_too=True)
     add_stage(made)
+    made.add_argument("--cost", action="store_true", help="predict the seconds of each effect, too")
     add_settings(made)
 
     made = command("simulate", "write the table of a profile, or those of a stage's layers")
@@ -301,8 +313,13 @@ def parser() -> argparse.ArgumentParser:
     web.add_argument("--sessionLayer", "--session", metavar="FILE", help="USD layer laid over the stage")
 
     made = command("study", "measure what accuracy costs in time, and write a report of it", json_too=True)
-    add_stage(made)
-    made.add_argument("out", metavar="OUT_DIR", help="folder of the report; measurements in it are taken up again")
+    add_stage(made, optional=True)
+    made.add_argument(
+        "out", metavar="OUT_DIR", nargs="?", help="folder of the report; measurements in it are taken up again"
+    )
+    made.add_argument(
+        "--calibrate", action="store_true", help="measure instead what work costs on this machine, for all renders"
+    )
     made.add_argument("--budget", metavar="TIME", help="90s, 10m or 2h: search settings of several knobs, too [none]")
     made.add_argument("--knobs", metavar="NAMES", default="", help="with commas [all that act on the stage]")
     made.add_argument("--repeats", type=int, default=3, metavar="N", help="rounds of all settings [3]")

@@ -61,18 +61,22 @@ def render(args: Command) -> int:
 
 
 def explain(args: Command) -> int:
-    """Print which effects STAGE calls for, and why."""
+    """Print which effects STAGE calls for, and why; what they cost where asked for."""
     import scratchwarp as sw
+
+    from .plan.cost import forecast
 
     scene = sw.read(args.stage, **arguments.reading(args))
     _warn(scene.warnings, set(), args.quiet)
     plan = sw.make_plan(scene, arguments.settings(args))
+    cost = forecast(scene, plan) if args.cost else None
     if args.json:
         effects = {n: {"enabled": e.enabled, "reason": e.reason, "prims": e.prims} for n, e in plan.effects.items()}
         warnings = scene.warnings + plan.warnings
-        print(json.dumps({"stage": args.stage, "warnings": warnings, "effects": effects}, default=_plain))
+        row = {"stage": args.stage, "warnings": warnings, "effects": effects}
+        print(json.dumps(row | ({"cost": cost.record()} if cost else {}), default=_plain))
     else:
-        print(plan.explain())
+        print(plan.explain() + (f"\n\n{cost.text()}" if cost else ""))
     return 0
 
 
@@ -215,6 +219,11 @@ def study(args: Command) -> int:
     from .study.command import run
 
     names, budget = arguments.study(args)
+    if args.calibrate:
+        from .pipelines.calibrate import calibrated
+
+        print(calibrated(args.quiet), flush=True)
+        return 0
     scene = sw.read(args.stage, **arguments.reading(args))
     _warn(scene.warnings, set(), args.quiet)
     args.kept = args.out

@@ -56,15 +56,17 @@ def render(
     say: Callable[[str], None],
     warn: Callable[[Sequence[str], set[str], bool], None],
 ) -> Iterator[dict[str, Any]]:
-    """Make the images and yield what there is to say of each: image, frame, warnings, stats.
+    """Make the images and yield what there is to say of each: image, frame, warnings, stats, what was predicted.
 
     A snapshot lies beside its image. Checkpoints of frames that are done go when all are done, so that ``--resume``
     leaves those frames alone.
     """
     import scratchwarp as sw
 
+    from .plan.cost import forecast
     from .render import AOVS, Farm, bar, checkpoint
     from .render.farm import workers_of
+    from .render.target import reached
 
     told: set[str] = set()
     layers = arguments.listed(",".join(args.aov))
@@ -96,6 +98,7 @@ def render(
                 if not args.quiet:
                     say(f"snapshot {beside}")
 
+            predicted = forecast(scene, plan) if args.cost or args.json else None
             how: dict[str, Any] = {"checkpoint": shot.checkpoint, "resume": args.resume, "keep": True}
             with bar(args.quiet, Path(shot.out).name) as progress:
                 film = sw.render(scene, plan, progress=progress, farm=farm, control=control, snapshot=show, **how)
@@ -105,8 +108,14 @@ def render(
                 checkpoint.finish(shot.checkpoint)
             elif shot.checkpoint:
                 Path(shot.checkpoint).unlink(missing_ok=True)
+            if plan.settings.max_error is not None and not args.quiet:
+                stats, samples = film.stats, int(film.metadata["scratchwarp:spp"])
+                say(f"{shot.out}: {reached(samples, stats['error'], stats['halving'])}")
+            if args.cost and predicted is not None and not args.json:
+                say(f"{shot.out}:\n{predicted.text(film.stats)}")
             warnings = tuple(dict.fromkeys(scene.warnings + plan.warnings + film.warnings))
-            yield {"image": shot.out, "frame": shot.frame, "warnings": warnings, "stats": dict(film.stats)}
+            row = {"image": shot.out, "frame": shot.frame, "warnings": warnings, "stats": dict(film.stats)}
+            yield row | ({"predicted": predicted.record()} if predicted else {})
     for shot in asked:
         if shot.checkpoint:
             Path(shot.checkpoint).unlink(missing_ok=True)

@@ -246,12 +246,10 @@ def assemble(
         lambda: glints.pack(scene, plan, key, shape, device),
     )
     scratch_set.glints = sparkle.arrays
-    groove_knobs = sorted(turned(plan.settings.knobs, "groove").items())
+    cut_by = (plan.settings.spp, sorted(turned(plan.settings.knobs, "groove").items()))
     cut = parts.part(
         "grooves",
-        (digest(scene.materials, key, plan.settings.spp, groove_knobs), scene.curves, scene.meshes, placed)
-        if key.grooves
-        else (),
+        (digest(scene.materials, key, cut_by), scene.curves, scene.meshes, placed) if key.grooves else (),
         lambda: grooves.pack(scene, plan, key, shape, device),
     )
     scratch_set.grooves = cut.arrays

@@ -113,6 +113,7 @@ class EffectPlan:
         grooves: for each material what of it is laid out groove by groove (a ``grooves.GroovePlan``), or None.
         bases: for each material the response that stands in for its base, or -1.
         warnings: what cannot be honoured. seconds: how long planning took.
+        aim: how an error asked for is met (a ``cost.aim.Aim``), None where none is.
     """
 
     effects: Mapping[str, EffectChoice]
@@ -128,6 +129,7 @@ class EffectPlan:
     waves: tuple[Any, ...] = ()
     bases: tuple[int, ...] = ()
     grooves: tuple[Any, ...] = ()
+    aim: Any = None
 
     def __post_init__(self) -> None:
         put(self, effects=MappingProxyType(dict(self.effects)), numbers=MappingProxyType(dict(self.numbers)))

@@ -85,7 +85,7 @@ def by_quality(quality: str | None) -> dict[str, Value]:
 
 
 def turned(knobs: Mapping[str, Value], where: str) -> dict[str, Any]:
-    """Field -> value of the knobs that set fields of ``where``: settings, table, wave ...; "auto" sets nothing."""
+    """Field -> value of the knobs that set fields of ``where``: settings, table and so on. "auto" sets nothing."""
     return {KNOBS[n].place[1]: v for n, v in knobs.items() if KNOBS[n].place[0] == where and v != "auto"}
 
 

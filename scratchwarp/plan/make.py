@@ -1,17 +1,20 @@
 """make_plan: walk the scene once and decide every effect."""
 
 import time
+from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 from ..lights.registry import MODELS
 from ..reflectance.profile_table import table_bytes
 from ..reflectance.responses import RESPONSES
 from ..scene import Layer, Material, Scene, Settings
 from .choice import EffectChoice, EffectPlan, LayerPlan, ResponsePlan, TablePlan
-from .cost import shares
+from .cost.aim import aim
+from .cost.shares import shares
 from .effects import EFFECTS, Facts, sampled_lights
 from .grooves import laid_out, mark_near, near_layers, plan_grooves
-from .knobs import turned_tables
+from .knobs import checked, turned_tables
 from .layers import plan_layers, reflector
 from .models import base_responses
 from .resolve import resolve
@@ -27,7 +30,37 @@ def make_plan(scene: Scene, settings: Settings | None = None, earlier: EffectPla
     Raises ValueError on an unknown effect name, or a layer whose profile cannot be simulated.
     """
     start = time.perf_counter()
-    decided, size, window = resolve(scene, settings or Settings())
+    settings = settings or Settings()
+    plan = _planned(scene, settings, earlier)
+    given = {**dict(scene.options.knobs), **settings.knobs}
+    if plan.settings.max_error is not None and settings.quality is None:
+        plan = _aimed(scene, settings, plan, given)
+    return replace(plan, seconds=time.perf_counter() - start)
+
+
+def _aimed(scene: Scene, settings: Settings, plan: EffectPlan, given: Mapping[str, Any]) -> EffectPlan:
+    """The plan with all knobs chosen for its error that are not ``given`` in some way."""
+    fields = {"spp": settings.spp, "pathDepth": settings.max_depth, "lights.coneTaps": settings.cone_taps}
+    given = {**{n: v for n, v in fields.items() if v is not None}, **checked(given)}
+    if scene.options.max_depth is not None:
+        given.setdefault("pathDepth", scene.options.max_depth)
+    asked: Any = given.get("spp")
+    found = aim(scene, plan, given, asked)
+    knobs = {**found.knobs, **settings.knobs}
+    if asked is None:
+        knobs["spp"] = found.samples
+    made = _planned(scene, replace(settings, knobs=knobs), plan)
+    text = f"samples grow from {found.first} until relMSE is estimated below {found.noise:.3g}"
+    if found.bias > 0.0:
+        text += f", of {found.error:g} asked for: about {found.bias:.2g} is what knobs may leave"
+    text += f"; {found.combinations} combinations of {', '.join(found.knobs) or 'no knobs'} compared"
+    return replace(made, aim=found, numbers={**made.numbers, "error": text})
+
+
+def _planned(scene: Scene, settings: Settings, earlier: EffectPlan | None) -> EffectPlan:
+    """The plan for settings as they are."""
+    start = time.perf_counter()
+    decided, size, window = resolve(scene, settings)
     forced = dict(decided.effects)
     for name in forced:
         if name not in EFFECTS:
@@ -116,7 +149,7 @@ def make_plan(scene: Scene, settings: Settings | None = None, earlier: EffectPla
     if far:
         numbers["stencils"] = far
     if decided.max_error is not None:
-        numbers["error"] = f"samples double from {decided.spp} until relMSE is estimated below {decided.max_error:g}"
+        numbers["error"] = f"samples grow from {decided.spp} until relMSE is estimated below {decided.max_error:g}"
     if decided.knobs:
         numbers["knobs"] = ", ".join(f"{name}={value}" for name, value in decided.knobs.items())
     if decided.model is not None:

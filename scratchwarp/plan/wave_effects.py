@@ -1,12 +1,12 @@
 """How the effects of wave optics are decided; rules as in ``effects``."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 
-from ..scene import Layer
+from ..scene import Layer, Scene, Settings
 from .waves import REGULAR, is_grating, looks_up
 
 Answer = tuple[bool, str, tuple[str, ...]]
@@ -33,16 +33,17 @@ def _segments(f: Any) -> Answer:
     return _answer(found, "scratches one by one, cut to the triangles", "no scratch that diffracts lies by itself")
 
 
-def _footprints(f: Any) -> tuple[float, float]:
-    """(edge of a sample's footprint, edge of a triangle) [m], both typical of what diffracts."""
-    camera, settings = f.scene.camera, f.settings
-    left, right, _, _ = camera.window(settings.width, settings.height, f.scene.options.conform, 1.0)
+def footprint_and_triangle(scene: Scene, settings: Settings, waves: Sequence[Any]) -> tuple[float, float]:
+    """(edge of a sample's footprint, edge of a triangle) [m], both typical of what diffracts; settings are decided."""
+    camera = scene.camera
+    assert settings.width and settings.height and settings.spp
+    left, right, _, _ = camera.window(settings.width, settings.height, scene.options.conform, 1.0)
     edge = (right - left) / settings.width / math.sqrt(settings.spp)
     sizes, far = [], []
-    for instance in f.scene.instances:
-        if not any(f.waves[m] is not None for m in instance.materials):
+    for instance in scene.instances:
+        if not any(waves[m] is not None for m in instance.materials):
             continue
-        mesh, matrix = f.scene.meshes[instance.mesh], instance.transform
+        mesh, matrix = scene.meshes[instance.mesh], instance.transform
         points = mesh.points @ matrix[:3, :3].T + matrix[:3, 3]
         some = mesh.triangles[:: max(1, len(mesh.triangles) // 1000)]
         if len(some):
@@ -59,7 +60,7 @@ def _lists(f: Any) -> Answer:
     found = _segments(f)
     if not found[0]:
         return False, "nothing to find", ()
-    footprint, triangle = _footprints(f)
+    footprint, triangle = footprint_and_triangle(f.scene, f.settings, f.waves)
     said = f"footprints of {footprint:.2g} m on triangles of {triangle:.2g} m"
     if 4.0 * footprint <= triangle:
         return True, f"pieces by triangle where the footprint fits its neighbours: {said}", found[2]

@@ -44,6 +44,22 @@ class Canvas:
         if checkpoint is not None:
             checkpoint.keep(number, job.first + job.count, sums)
 
+    def before(self, earlier: Mapping[int, tuple[int, np.ndarray]], begun: int) -> tuple[np.ndarray, int] | None:
+        """(color sums, samples) of the pass before the one to ``begun`` samples, in which some tiles are already.
+
+        ``earlier``: tile number -> (samples, color) of its pass before. None where a tile has none.
+        """
+        color, counts = self.sums["color"].copy(), set()
+        for number, tile in enumerate(self.tiles):
+            count = int(self.samples[number])
+            if count == begun:
+                if number not in earlier:
+                    return None
+                count, values = earlier[number]
+                color[tile.y : tile.y + tile.height, tile.x : tile.x + tile.width] = values
+            counts.add(count)
+        return (color, counts.pop()) if len(counts) == 1 else None
+
     def samples_of_pixels(self) -> np.ndarray:
         """Samples [h, w] of each pixel."""
         found = np.zeros(self.sums["alpha"].shape, np.int64)

@@ -23,6 +23,7 @@ def described(scene: Scene, plan: EffectPlan, key: KernelKey) -> dict[str, str]:
         "spp": settings.spp or 1,
         "seed": settings.seed,
         "max_error": settings.max_error,
+        "first pass": None if plan.aim is None else f"{plan.aim.first} to leave {plan.aim.noise:.6g}",
         "max_depth": settings.max_depth,
         "filter": settings.filter,
         "filter_width": settings.filter_width,

@@ -22,7 +22,7 @@ from .interrupt import Control
 from .launch import loaded
 from .progress import Progress, silent
 from .tables import simulate_tables
-from .target import noted, says, until
+from .target import MOST, noted, says, until
 from .trace import Job, Threads, Tracer
 
 if TYPE_CHECKING:
@@ -53,8 +53,8 @@ def render(
         snapshot: is given the image as it is whenever ``control`` asks; pixels without samples are black and
             transparent.
 
-    With ``max_error``, the samples are doubled until the error estimated from them is below it (see ``target``), and
-    stats say what it came to.
+    With ``max_error``, samples are added until the error estimated from them is below it (see ``target``), and stats
+    say what it came to.
 
     The image does not depend on ``threads``, ``tile`` or ``farm``. Raises ValueError on a checkpoint of another render,
     KeyboardInterrupt where ``control`` stops it.
@@ -62,6 +62,9 @@ def render(
     progress, control = progress or silent, control or Control()
     settings = plan.settings
     threads, spp = settings.threads or 1, settings.spp or 1
+    limit, left, most = settings.max_error, 0.0, MOST * spp
+    if limit is not None and plan.aim is not None:
+        spp, limit, left = plan.aim.first, plan.aim.noise, plan.aim.bias
     wp.config.log_level = max(wp.config.log_level, wp.LOG_WARNING)
     wp.init()
     clock, cpu = time.perf_counter(), time.process_time()
@@ -131,11 +134,13 @@ def render(
         trace(canvas.jobs(samples), done)
 
     begun = max(spp, int(canvas.samples.max(initial=0)))
+    before = canvas.before(disk.earlier, begun) if disk is not None and begun > spp else None
     try:
         to(begun)
         samples, error = until(
-            settings.max_error, spp, lambda: canvas.sums, lambda first, count: to(first + count), begun
+            limit, spp, lambda: canvas.sums, lambda first, count: to(first + count), begun, before, most
         )
+        error += left
     finally:
         if disk is not None:
             disk.close()

@@ -1,4 +1,11 @@
-"""How far an image still is from what more samples would make of it, and rendering until that is little enough."""
+"""How far an image still is from what more samples would make of it, and rendering until that is little enough.
+
+Two estimates are averaged: the spread of the samples of each pixel, and what the last pass changed. Samples are taken
+for independent in both; ours lie more evenly, so that both err to the safe side. The error is relative to the
+luminance that a pixel would have without noise: its own, drawn towards that of its neighbours as far as its noise
+allows, so that a pixel with one bright sample does not count as a bright pixel. The standard error of the mean over
+pixels is added: where few of them carry most of the error, less is known of it.
+"""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -8,23 +15,97 @@ import numpy as np
 FLOOR = 0.01
 """Share of the squared mean luminance that is added to each pixel's own: black ones do not count without end."""
 MOST = 64
-"""A render with an error target has at most so many times the samples that it begins with."""
+"""A render with an error target has at most so many times the samples that were asked for or predicted."""
+CLIP = 8.0
+"""Neighbours brighter than so many times their median are cut there before they are averaged."""
+EDGE = 2
+_LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 
-def remaining(sums: Mapping[str, Any], samples: int) -> float:
-    """Estimated relMSE of an image by the spread of its samples: the mean over pixels of the variance of their mean
-    luminance Y over Y^2 + ``FLOOR`` times the squared mean of Y. Samples are taken for independent; ours lie more
-    evenly, so that the true error is mostly below. What samples do not cure, such as coarse tables, is not in it.
+def remaining(sums: Mapping[str, Any], samples: int, before: tuple[np.ndarray, int] | None = None) -> float:
+    """Estimated relMSE of an image against one of many more samples; infinite for one sample.
 
-    ``sums``: color [h, w, 3], square and invalid [h, w] over ``samples`` of each pixel. Infinite for one sample.
+    What samples do not cure, such as coarse tables, is not in it.
+
+    ``sums``: color [h, w, 3], square and invalid [h, w] over ``samples`` of each pixel. ``before``: an earlier (color,
+    samples) of the same image.
     """
     if samples < 2:
         return float("inf")
-    good = np.maximum(samples - np.asarray(sums["invalid"], np.float64), 1.0)
-    y = np.asarray(sums["color"], np.float64) @ np.array([0.2126, 0.7152, 0.0722]) / good
-    spread = np.maximum(np.asarray(sums["square"], np.float64) / good - y**2, 0.0) / np.maximum(good - 1.0, 1.0)
-    floor = FLOOR * float(y.mean()) ** 2
-    return float((spread / (y**2 + floor)).mean()) if floor > 0.0 else 0.0
+    square = squared(sums, samples, before)
+    floor = FLOOR * float(luminance(sums, samples).mean()) ** 2
+    if floor <= 0.0:
+        return 0.0
+    off = square / (shrunk(sums, samples, square) ** 2 + floor)
+    return float(off.mean() + off.std() / np.sqrt(off.size))
+
+
+def luminance(sums: Mapping[str, Any], samples: int) -> np.ndarray:
+    """Mean luminance of each pixel, [h, w]."""
+    return np.asarray(sums["color"], np.float64) @ _LUMINANCE / _good(sums, samples)
+
+
+def squared(sums: Mapping[str, Any], samples: int, before: tuple[np.ndarray, int] | None = None) -> np.ndarray:
+    """Estimated square of each pixel's error, mean over channels, [h, w]; arguments as of ``remaining``."""
+    good = _good(sums, samples)
+    mean = luminance(sums, samples)
+    spread = np.maximum(np.asarray(sums["square"], np.float64) / good - mean**2, 0.0) / np.maximum(good - 1.0, 1.0)
+    if before is None or not 0 < before[1] < samples:
+        return spread
+    color, count = before
+    moved = np.asarray(sums["color"], np.float64) / samples - np.asarray(color, np.float64) / count
+    return 0.5 * (spread + (moved**2).mean(axis=-1) * (count / (samples - count)))
+
+
+def shrunk(sums: Mapping[str, Any], samples: int, square: np.ndarray) -> np.ndarray:
+    """Luminance of each pixel, drawn towards the mean of its neighbours as far as ``square`` allows (a positive-part
+    James-Stein estimate), [h, w]."""
+    mean = luminance(sums, samples)
+    middle = _median(mean)
+    around = _box(np.minimum(mean, CLIP * middle + 0.1 * mean.mean()))
+    noise = np.maximum(square, 0.3 * np.minimum(_box(square), around**2))
+    off = mean - around
+    keep = np.clip(1.0 - 2.0 * noise / np.maximum(off**2, 1e-30), 0.0, 1.0)
+    return around + keep * off
+
+
+def _good(sums: Mapping[str, Any], samples: int) -> np.ndarray:
+    return np.maximum(samples - np.asarray(sums["invalid"], np.float64), 1.0)
+
+
+def _shifted(values: np.ndarray, axis: int) -> list[np.ndarray]:
+    pad = [(0, 0), (0, 0)]
+    pad[axis] = (EDGE, EDGE)
+    wide = np.pad(values, pad, mode="edge")
+    size = values.shape[axis]
+    return [np.take(wide, range(k, k + size), axis) for k in range(2 * EDGE + 1)]
+
+
+def _box(values: np.ndarray) -> np.ndarray:
+    """Mean over 5 x 5 pixels."""
+    rows = np.mean(_shifted(values, 0), axis=0)
+    return np.asarray(np.mean(_shifted(np.asarray(rows), 1), axis=0))
+
+
+def _median(values: np.ndarray) -> np.ndarray:
+    """Median over 5 rows of the median over 5 columns."""
+    rows = np.partition(np.stack(_shifted(values, 0)), EDGE, axis=0)[EDGE]
+    return np.asarray(np.partition(np.stack(_shifted(rows, 1)), EDGE, axis=0)[EDGE])
+
+
+def later(samples: int) -> int:
+    """The next number of samples: half as many more, or a third, so that every second one has double."""
+    if samples < 2:
+        return 2
+    return samples + (samples // 3 if samples % 3 == 0 and samples > 3 else max(samples // 2, 1))
+
+
+def ahead(samples: int, error: float, target: float, most: int) -> int:
+    """The number of samples to look at next: what is surely needed is not looked at."""
+    needed, at = 0.7 * samples * error / target if np.isfinite(error) else 0.0, later(samples)
+    while later(at) <= min(needed, 4 * samples):
+        at = later(at)
+    return min(at, most)
 
 
 def until(
@@ -33,16 +114,26 @@ def until(
     sums: Callable[[], Mapping[str, Any]],
     more: Callable[[int, int], None],
     begun: int = 0,
+    before: tuple[np.ndarray, int] | None = None,
+    most: int | None = None,
 ) -> tuple[int, float]:
-    """(samples, estimated error): ``more(first, count)`` doubles the samples until ``sums()`` are within ``target``, or
-    there are ``MOST`` times as many as at the start. None adds none. ``begun``: samples that are there already, of a
-    render that goes on."""
-    most = MOST * samples
+    """(samples, estimated error): ``more(first, count)`` adds samples until ``sums()`` are within ``target``, or there
+    are ``most`` (``MOST`` times as many as at the start, ``samples``). None adds none.
+
+    ``begun``: samples that are there already, of a render that goes on; ``before``: (color sums, samples) of the pass
+    before, without which it may go on otherwise than at once.
+    """
+    most = MOST * samples if most is None else most
     samples = max(samples, begun)
-    while (error := remaining(sums(), samples)) > (float("inf") if target is None else target) and samples < most:
-        more(samples, samples)
-        samples *= 2
-    return samples, error
+    while True:
+        now = sums()
+        error = remaining(now, samples, before)
+        if target is None or error <= target or samples >= most:
+            return samples, error
+        before = (np.array(now["color"], np.float32), samples)
+        count = ahead(samples, error, target, most)
+        more(samples, count - samples)
+        samples = count
 
 
 def noted(error: float) -> dict[str, float]:
@@ -54,7 +145,9 @@ def says(target: float | None, samples: int, error: float, seconds: float) -> tu
     """A warning where the target was not reached."""
     if target is None or error <= target:
         return ()
-    return (
-        f"max_error {target:g} was not reached: {error:.2g} after {samples} samples; half of it takes about "
-        f"{seconds:.3g} s more, begin with more samples",
-    )
+    return (f"max_error {target:g} was not reached: {reached(samples, error, seconds)}; begin with more samples",)
+
+
+def reached(samples: int, error: float, seconds: float) -> str:
+    """What a render came to, and what half of its error costs: ``seconds`` that its samples took."""
+    return f"relMSE {error:.2g} after {samples} samples a pixel; half of it takes about {seconds:.3g} s more"

@@ -137,7 +137,7 @@ class _Study:
 
     def _rendered(self, knobs: Setting, seed: int, progress: Progress = silent) -> tuple[np.ndarray, dict[str, float]]:
         plan: EffectPlan = make_plan(self.scene, self._turned(knobs, seed))
-        plan = replace(plan, settings=replace(plan.settings, max_error=None))  # tables are chosen; samples are given
+        plan = replace(plan, aim=None, settings=replace(plan.settings, max_error=None))  # samples are given
         film = render(self.scene, plan, progress=progress)
         return film["color"], {part: float(film.stats[part]) for part in (*PARTS, "compile")}
 

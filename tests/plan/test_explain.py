@@ -5,7 +5,7 @@ import pytest
 import scratchwarp as sw
 from scratchwarp.lights import MODELS
 from scratchwarp.plan import EffectChoice, EffectPlan
-from scratchwarp.plan.cost import LIGHT, SET
+from scratchwarp.plan.cost.shares import LIGHT, SET
 from scratchwarp.scene import Material
 from scratchwarp.scratches import KINDS
 
@@ -52,7 +52,7 @@ def test_numbers_and_warnings_follow():
     assert "image: 64 x 64 pixels" in text and "3 samples each" in text
     assert "memory: 1.6 MB of tables; 0 segments" in text  # a mirror of 256 x 256 cells, 24 bytes each
     assert f"geometry: {len(S.sphere(8, 16).triangles)} triangles in 1 instances" in text
-    assert "error: samples double from 3 until relMSE is estimated below 0.02" in text
+    assert "error: samples grow from 3 until relMSE is estimated below 0.02" in text
 
 
 def test_shares_are_those_of_effects_that_are_on_and_leave_room_for_the_rest():

@@ -7,7 +7,7 @@ They rank effects; they do not predict seconds.
 
 from collections.abc import Mapping
 
-from .choice import EffectChoice, LayerPlan
+from ..choice import EffectChoice, LayerPlan
 
 CAMERA_RAY = 800.0
 SHADOW_RAY = 160.0

@@ -1,0 +1,132 @@
+"""The cheapest values of all knobs whose predicted error is below the one asked for.
+
+The error of an image is that of its noise, which falls with samples, and the biases of its knobs, which do not. They
+are taken for independent, so that relMSE add up. What a bias buys in seconds is set against the samples that it costs.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import Any
+
+from ...scene import Scene
+from ...scene.knob import Value
+from ..choice import EffectPlan
+from ..knobs import KNOBS, acting, turned_tables
+from .forecast import forecast
+from .models import Costs, Errors, costs, errors
+from .visible import visible
+from .work import of_table
+
+BIAS_SHARE = 0.5
+"""Largest share of an error that knobs may leave, so that noise has the rest."""
+FIRST = 2
+"""Samples a pixel of the first pass: the fewest whose spread says something."""
+MOST = 1024
+_TABLE = "table"
+
+
+@dataclass(frozen=True)
+class Aim:
+    """How an error is to be met.
+
+    Attributes:
+        error: asked for; bias: predicted of what the knobs leave; noise: what samples may leave.
+        first: samples a pixel of the first pass, after which they are added by need.
+        knobs: chosen. seconds: predicted, with ``samples`` a pixel; combinations: that were compared.
+    """
+
+    error: float
+    bias: float
+    noise: float
+    first: int
+    knobs: Mapping[str, Value]
+    samples: int
+    seconds: float
+    combinations: int
+
+
+def aim(
+    scene: Scene,
+    plan: EffectPlan,
+    given: Mapping[str, Value],
+    samples: int | None = None,
+    prices: Costs | None = None,
+    left: Errors | None = None,
+) -> Aim:
+    """Choose for ``plan.settings.max_error``. ``plan``: with the knobs that are ``given``, which stay; ``samples``:
+    asked for, None where they follow from the error."""
+    prices, left = prices or costs(), left or errors()
+    target = float(plan.settings.max_error or 0.0)
+    known = acting(plan)
+    open_knobs = [n for n in left.bias if n in known and n not in given]
+    fixed = sum(left.bias[n].get(str(v), 0.0) for n, v in given.items() if n in left.bias and n in known)
+    seen = visible(scene, plan.size, plan.window)
+    threads = max(plan.settings.threads or 1, 1)
+    speed = 1.0 if threads == 1 else prices.efficiency * threads
+    grouped = {name: KNOBS[name].place[0] == _TABLE for name in open_knobs}
+    tables = [
+        (knobs, bias, _simulated(plan, knobs, prices) / speed)
+        for knobs, bias in _combinations([n for n in open_knobs if grouped[n]], left, BIAS_SHARE * target)
+    ]
+    spp = plan.settings.spp or 1
+    traced = []
+    for knobs, bias in _combinations([n for n in open_knobs if not grouped[n]], left, BIAS_SHARE * target):
+        cost = forecast(scene, _turned(plan, knobs), prices, seen)
+        traced.append((knobs, bias, cost.part("trace") / spp))
+    best: tuple[float, float, Aim] | None = None
+    for (own, bias, once), (others, more, each) in product(_front(tables), _front(traced)):
+        whole = fixed + bias + more
+        noise = max(target - whole, 0.5 * target)
+        count = samples or wanted(noise, left)
+        seconds = once + each * count
+        if best is None or (seconds, whole) < best[:2]:
+            chosen: dict[str, Value] = {**own, **others}
+            number = len(tables) * len(traced)
+            first = samples or min(FIRST, count)
+            best = seconds, whole, Aim(target, whole, noise, first, chosen, count, seconds, number)
+    assert best is not None  # there is always the reference
+    return best[2]
+
+
+def wanted(noise: float, left: Errors) -> int:
+    """Samples a pixel that leave a typical image this much noise: a power of two."""
+    one, power = left.noise
+    count, needed = FIRST, (one / noise) ** (1.0 / power)
+    while count < min(needed, MOST):
+        count *= 2
+    return count
+
+
+def _combinations(names: list[str], left: Errors, most: float) -> Iterator[tuple[dict[str, Value], float]]:
+    """(values, their biases together) of knobs within ``most``; their reference values always."""
+    ladders = []
+    for name in names:
+        rows = [(v, left.bias[name][str(v)]) for v in KNOBS[name].values if str(v) in left.bias[name]]
+        ladders.append([row for row in rows if row[1] <= most] or rows[-1:])
+    for values in product(*ladders):
+        whole = sum(bias for _, bias in values)
+        if whole <= most or all(v == ladder[-1][0] for (v, _), ladder in zip(values, ladders, strict=True)):
+            yield {name: v for name, (v, _) in zip(names, values, strict=True)}, whole
+
+
+def _front(rows: list[tuple[dict[str, Value], float, float]]) -> list[tuple[dict[str, Value], float, float]]:
+    """Those that nothing beats in both bias and seconds."""
+    kept: list[tuple[dict[str, Value], float, float]] = []
+    for row in sorted(rows, key=lambda row: (row[2], row[1])):
+        if not kept or row[1] < kept[-1][1]:
+            kept.append(row)
+    return kept
+
+
+def _simulated(plan: EffectPlan, knobs: Mapping[str, Value], prices: Costs) -> float:
+    """Seconds of one thread for the plan's tables."""
+    made = turned_tables(plan.tables, knobs, False)
+    return sum(count * prices.of(unit) for table in made for (_, unit), count in of_table(table).items())
+
+
+def _turned(plan: EffectPlan, knobs: Mapping[str, Value]) -> EffectPlan:
+    """The plan with knobs of tracing turned, as far as ``work`` looks."""
+    fields: dict[str, Any] = {KNOBS[n].place[1]: v for n, v in knobs.items() if KNOBS[n].place[0] == "settings"}
+    known = {**plan.settings.knobs, **knobs}
+    return replace(plan, settings=replace(plan.settings, **fields, knobs=known))

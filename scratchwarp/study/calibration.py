@@ -1,0 +1,202 @@
+"""What units of work cost on this machine: stages are rendered, their work is counted, and prices are fitted.
+
+Processor time is measured, not wall-clock time, so that other programs on the machine count little.
+"""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..kernels import assemble
+from ..plan import make_plan
+from ..plan.cost.models import FORMAT, UNMEASURED, user_file
+from ..plan.cost.shares import LIGHT, SET
+from ..plan.cost.work import Work, of_table, work
+from ..render.launch import film_arrays, launcher, loaded
+from ..render.progress import Progress, silent
+from ..render.renderer import simulate_table
+from ..render.tiles import run, tiles
+from ..scene import Scene, Settings
+from ..whole import whole
+from .report import machine
+
+# Nanoseconds that a fit begins with and falls back to where no stage tells.
+PRIOR: dict[str, float] = {
+    "camera": 400.0, "camera.triangles": 300.0, "base": 300.0, "shadows": 160.0, "scratches.table": 100.0,
+    "lights.closedForm": 300.0, "lights.coneTaps": 15.0, "lights.sampled": 200.0, "diffraction.segments": 60.0,
+    "diffraction.bands": 200.0, "grooves": 500.0, "grooves.crossings": 300.0, "grooves.paths": 1000.0,
+    "tables.table": 3e7, "tables.cell": 50.0, "tables.ray": 300.0, "tables.rayBounced": 600.0,
+    "build.triangles": 3000.0, "build.pixels": 100.0, "build.kernel": 5e7, "build.strokes": 20000.0,
+    **{f"lights.{name}": float(ns) for name, ns in LIGHT.items()},
+    **{f"scratches.{name}": float(ns) for name, ns in SET.items()}, **UNMEASURED,
+}  # fmt: skip
+STAGES = (
+    "ball", "plain", "panel", "gold", "plastic", "patterns", "disc", "roof", "grooves_parallel", "grooves_crossing"
+)  # fmt: skip
+"""Demo stages that prices are fitted to; the others are for testing them."""
+RIDGE = 0.02
+"""Weight of the prior beside that of one stage."""
+VARIANTS: tuple[dict[str, bool], ...] = (
+    {},
+    {"shadows": False},
+    {"scratches": False},
+    {"lights.dome": False},
+    {"lights.rect": False},
+    {"lights.sphere": False},
+    {"lights.closedForm": False},
+)
+
+
+@dataclass(frozen=True)
+class Sample:
+    """One stage under one setting: what it did, and the processor seconds of simulating, building and tracing."""
+
+    name: str
+    counted: Work
+    simulate: tuple[tuple[Mapping[tuple[str, str], float], float], ...]
+    build: float
+    trace: float
+
+
+def measured(name: str, scene: Scene, settings: Settings) -> Sample:
+    """Render a scene part by part."""
+    plan = make_plan(scene, settings)
+    plan = replace(plan, settings=replace(plan.settings, max_error=None))
+    tables, simulated = [], []
+    for table in plan.tables:
+        start = time.process_time()
+        tables.append(simulate_table(table, 1))
+        simulated.append((of_table(table), time.process_time() - start))
+    start = time.process_time()
+    built = assemble(scene, plan, tables)
+    build = time.process_time() - start
+    kernel, _ = loaded(built.key, "cpu")
+    x0, x1, y0, y1 = plan.window
+    film = film_arrays(x1 - x0, y1 - y0, "cpu")
+    launch = launcher(kernel, built, plan, film, "cpu")
+    jobs = tiles(x1 - x0, y1 - y0, plan.settings.tile)
+    launch(jobs[0], 0, 1)  # what the first launch alone takes
+    start = time.process_time()
+    run(jobs, [lambda tile: launch(tile, 0, plan.settings.spp or 1)], lambda tile: None)
+    trace = time.process_time() - start
+    return Sample(name, work(scene, plan), tuple(simulated), build, trace)
+
+
+def fitted(rows: Sequence[Mapping[str, float]], seconds: Sequence[float], ridge: float = RIDGE) -> dict[str, float]:
+    """Nanoseconds of units, none below 0: least squares of relative errors, held to the prior by ``ridge``.
+
+    ``rows``: unit -> how often, of each measurement.
+    """
+    units = sorted({unit for row in rows for unit in row})
+    prior = np.array([1e-9 * PRIOR.get(unit, 100.0) for unit in units])
+    a = np.array([[row.get(unit, 0.0) for unit in units] for row in rows])
+    taken = np.maximum(np.asarray(seconds, float), 1e-6)
+    system = np.concatenate([a * prior / taken[:, None], np.sqrt(ridge) * np.eye(len(units))])
+    wanted = np.concatenate([np.ones(len(taken)), np.full(len(units), np.sqrt(ridge))])
+    normal, right = system.T @ system, system.T @ wanted
+    x = np.ones(len(units))
+    for _ in range(4000):  # coordinate descent: few unknowns, one minimum
+        for k in range(len(units)):
+            x[k] = max(0.0, x[k] + (right[k] - normal[k] @ x) / normal[k, k])
+    return {unit: float(1e9 * p * v) for unit, p, v in zip(units, prior, x, strict=True)}
+
+
+def _plain(units: Mapping[tuple[str, str], float], factor: float = 1.0) -> dict[str, float]:
+    made: dict[str, float] = {}
+    for (_, unit), count in units.items():
+        made[unit] = made.get(unit, 0.0) + factor * count
+    return made
+
+
+def prices(samples: Sequence[Sample]) -> tuple[dict[str, float], float, float]:
+    """(nanoseconds of every unit, price of the work of later surfaces of paths, spread of predictions)."""
+    direct = [s for s in samples if s.counted.indirect == 0.0]
+    found = fitted([_plain(s.counted.each, s.counted.samples) for s in direct], [s.trace for s in direct])
+    tables = [row for s in samples for row in s.simulate]
+    if tables:
+        found |= fitted([_plain(units) for units, _ in tables], [seconds for _, seconds in tables])
+    found |= fitted([_plain(s.counted.build) for s in samples], [s.build for s in samples])
+
+    def predicted(s: Sample) -> tuple[float, float]:
+        each = _plain(s.counted.each, 1e-9 * s.counted.samples)
+        first = sum(found.get(unit, 0.0) * n for unit, n in each.items())
+        seen = sum(found.get(unit, 0.0) * n for unit, n in each.items() if not unit.startswith("camera"))
+        return first, seen * s.counted.indirect
+
+    ratios = []
+    for s in samples:
+        first, later = predicted(s)
+        if later > 0.0:
+            ratios.append(max(s.trace - first, 0.05 * later) / later)
+    indirect = float(np.median(ratios)) if ratios else 1.0
+    off = [abs(np.log(s.trace / max(sum((p[0], indirect * p[1])), 1e-9))) for s in samples if (p := predicted(s))]
+    return found, indirect, float(np.exp(np.quantile(off, 0.9)))
+
+
+def efficiency() -> float:
+    """Share of one thread's speed that each of all threads has, of arithmetic that fits the caches; at most 1."""
+    return 0.9 if (os.cpu_count() or 1) > 1 else 1.0
+
+
+def cold_compile(stage: str | Path, features: int) -> tuple[float, float]:
+    """(seconds of compiling the smallest kernel, seconds a feature): a stage rendered with an empty kernel cache."""
+    with tempfile.TemporaryDirectory() as folder:
+        command = [sys.executable, "-m", "scratchwarp", "render", str(stage), str(Path(folder) / "one.png"), "--json"]
+        command += ["--quiet", "--imageWidth", "8", "--spp", "1"]
+        environment = {**os.environ, "WARP_CACHE_PATH": str(Path(folder) / "kernels")}
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+        rows = [line for line in done.stdout.splitlines() if line.startswith("{")]
+        if done.returncode or not rows:
+            return 4.0, 0.3
+        seconds = float(json.loads(rows[-1])["stats"]["compile"])
+    return 0.3 * seconds, 0.7 * seconds / max(features, 1)
+
+
+def calibrate(
+    stages: Iterable[tuple[str, Scene]],
+    file: Path | None = None,
+    width: int = 96,
+    progress: Progress = silent,
+    compile_stage: str | Path | None = None,
+) -> Path:
+    """Measure stages and write the prices; the file. ``stages``: (name, scene); of the first, effects are switched off
+    one at a time, too. ``compile_stage``: a stage to compile with an empty cache, None leaves that out."""
+    known, samples = list(stages), []
+    jobs: list[tuple[str, Scene, dict[str, bool], dict[str, Any]]] = []
+    for number, (name, scene) in enumerate(known):
+        for forced in VARIANTS if number == 0 else ({},):
+            jobs.append((name, scene, forced, {"spp": 16}))
+    jobs += [(name, scene, {}, {"spp": 8, "integrator": "path"}) for name, scene in known[:3]]
+    for number, (name, scene, forced, more) in enumerate(jobs):
+        progress(number, len(jobs), f"calibrate {name}")
+        samples.append(measured(name, scene, Settings(width=width, threads=1, effects=forced, **more)))
+    progress(len(jobs), len(jobs), "calibrate")
+    found, indirect, spread = prices(samples)
+    cold = (4.0, 0.3)
+    if compile_stage is not None:
+        plan = make_plan(known[0][1], Settings(width=8))
+        cold = cold_compile(compile_stage, sum(choice.enabled for choice in plan.effects.values()))
+    target = file or user_file()
+    record = {
+        "format": FORMAT,
+        **machine(),
+        "stages": [name for name, _ in known],
+        "nanoseconds": {unit: round(ns, 3) for unit, ns in sorted(found.items())},
+        "cold": [round(x, 3) for x in cold],
+        "indirect": round(indirect, 3),
+        "spread": round(spread, 3),
+        "efficiency": efficiency(),
+    }
+    target.parent.mkdir(parents=True, exist_ok=True)
+    with whole(target) as draft:
+        draft.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
+    return target
