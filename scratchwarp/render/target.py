@@ -3,8 +3,10 @@
 Two estimates are averaged: the spread of the samples of each pixel, and what the last pass changed. Samples are taken
 for independent in both; ours lie more evenly, so that both err to the safe side. The error is relative to the
 luminance that a pixel would have without noise: its own, drawn towards that of its neighbours as far as its noise
-allows, so that a pixel with one bright sample does not count as a bright pixel. The standard error of the mean over
-pixels is added: where few of them carry most of the error, less is known of it.
+allows, so that a pixel with one bright sample does not count as a bright pixel. Pixels that missed what is bright seem
+to have no error: their neighbours tell, so that the ratio of means over 5 x 5 pixels is looked at, too, and the larger
+of both counts. Half the standard error of the mean over pixels is added: where few of them carry most of the error,
+less is known of it.
 """
 
 from collections.abc import Callable, Mapping
@@ -32,12 +34,13 @@ def remaining(sums: Mapping[str, Any], samples: int, before: tuple[np.ndarray, i
     """
     if samples < 2:
         return float("inf")
-    square = squared(sums, samples, before)
-    floor = FLOOR * float(luminance(sums, samples).mean()) ** 2
+    square, mean = squared(sums, samples, before), luminance(sums, samples)
+    floor = FLOOR * float(mean.mean()) ** 2
     if floor <= 0.0:
         return 0.0
-    off = square / (shrunk(sums, samples, square) ** 2 + floor)
-    return float(off.mean() + off.std() / np.sqrt(off.size))
+    alone = square / (shrunk(sums, samples, square) ** 2 + floor)
+    together = _box(square) / (_box(mean) ** 2 + floor)
+    return max(float(off.mean() + 0.5 * off.std() / np.sqrt(off.size)) for off in (alone, together))
 
 
 def luminance(sums: Mapping[str, Any], samples: int) -> np.ndarray:

@@ -33,7 +33,7 @@ from .report import machine
 PRIOR: dict[str, float] = {
     "camera": 400.0, "camera.triangles": 300.0, "base": 300.0, "shadows": 160.0, "scratches.table": 100.0,
     "lights.closedForm": 300.0, "lights.coneTaps": 15.0, "lights.sampled": 200.0, "diffraction.segments": 60.0,
-    "diffraction.bands": 200.0, "grooves": 500.0, "grooves.crossings": 300.0, "grooves.paths": 1000.0,
+    "diffraction.bands": 200.0, "grooves": 6000.0, "grooves.crossings": 3000.0, "grooves.paths": 5000.0,
     "tables.table": 3e7, "tables.cell": 50.0, "tables.ray": 300.0, "tables.rayBounced": 600.0,
     "build.triangles": 3000.0, "build.pixels": 100.0, "build.kernel": 5e7, "build.strokes": 20000.0,
     **{f"lights.{name}": float(ns) for name, ns in LIGHT.items()},

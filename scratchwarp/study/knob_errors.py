@@ -1,7 +1,7 @@
 """What each value of a knob leaves in an image, without noise: the file ``plan/cost/errors.json`` is made by this.
 
 Two pairs of images with seeds of their own are rendered, each with the same samples at a value and at the knob's
-reference value. The mean product of the two differences has no noise in it on average.
+reference value. The mean product of the two differences has no noise in it on average; its standard error is added.
 """
 
 import json
@@ -46,7 +46,7 @@ def biases(scene: Scene, settings: Settings, names: Iterable[str] = MEASURED) ->
                 first, second = (_image(scene, settings, {name: value}, seed) - other for seed, other in pairs)
                 mean = 0.5 * (best[0].astype(np.float64) + best[1])
                 off = (first.astype(np.float64) * second).mean(axis=-1) * weights(mean)
-                found[name][str(value)] = max(float(off.mean()), 0.0)
+                found[name][str(value)] = max(float(off.mean()), 0.0) + float(off.std()) / np.sqrt(off.size)
     return found
 
 
