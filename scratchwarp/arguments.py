@@ -154,34 +154,6 @@ def _knob(text: str) -> tuple[str, "Value"]:
         raise UsageError(f"--knob: {error}") from None
 
 
-def study(args: argparse.Namespace) -> "tuple[tuple[str, ...] | None, float | None]":
-    """(knobs or None for all, budget in seconds or None); UsageError on a knob or a time that is none."""
-    from .plan.knobs import KNOBS
-
-    names = listed(args.knobs)
-    for name in names:
-        if name not in KNOBS:
-            raise UsageError(f"--knobs {name!r} is not one of {', '.join(KNOBS)}")
-    if args.calibrate:
-        if args.stage:
-            raise UsageError("--calibrate renders stages of its own; leave out STAGE and OUT_DIR")
-        return None, None
-    if not args.stage or not args.out:
-        raise UsageError("STAGE and OUT_DIR are needed, or --calibrate alone")
-    if args.repeats < 1:
-        raise UsageError(f"--repeats {args.repeats} is not 1 or more")
-    if not args.budget:
-        return names or None, None
-    unit = {"s": 1.0, "m": 60.0, "h": 3600.0}.get(args.budget[-1])
-    try:
-        seconds = float(args.budget[:-1] if unit else args.budget) * (unit or 1.0)
-    except ValueError:
-        seconds = 0.0
-    if not 0.0 < seconds < 1e9:
-        raise UsageError(f"--budget {args.budget!r} is no time: write 90s, 10m or 2h")
-    return names or None, seconds
-
-
 _EXAMPLES = {
     "": """scratchwarp demo out
   scratchwarp render ball.usda ball.exr -w 640 --spp 64

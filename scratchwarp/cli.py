@@ -213,25 +213,12 @@ def fit(args: Command) -> int:
 
 
 def study(args: Command) -> int:
-    """Measure what accuracy costs on STAGE, and write a report of it."""
-    import scratchwarp as sw
+    """Measure what accuracy costs on STAGE and write a report of it, or measure this machine's prices."""
+    from . import studies
 
-    from .study.command import run
-
-    names, budget = arguments.study(args)
-    if args.calibrate:
-        from .pipelines.calibrate import calibrated
-
-        print(calibrated(args.quiet), flush=True)
-        return 0
-    scene = sw.read(args.stage, **arguments.reading(args))
-    _warn(scene.warnings, set(), args.quiet)
-    args.kept = args.out
-    written = run(scene, names, args.repeats, arguments.settings(args), budget, args.out, args.quiet)
-    if args.json:
-        print(written.json, flush=True)
-    elif not args.quiet:
-        print(written.text, flush=True)
+    text, record = studies.run(args, lambda warnings: _warn(warnings, set(), args.quiet))
+    if args.json or not args.quiet:
+        print(record if args.json else text, flush=True)
     return 0
 
 

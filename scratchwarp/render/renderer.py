@@ -150,4 +150,5 @@ def render(
         Path(checkpoint).unlink(missing_ok=True)
     traced = time.perf_counter()
     made = film(samples, error, traced)
-    return replace(made, warnings=made.warnings + says(settings.max_error, samples, error, traced - compiled))
+    said = says(settings.max_error, samples, error, traced - compiled, left)
+    return replace(made, warnings=made.warnings + said)

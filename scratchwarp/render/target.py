@@ -144,11 +144,15 @@ def noted(error: float) -> dict[str, float]:
     return {"scratchwarp:error": error} if np.isfinite(error) else {}
 
 
-def says(target: float | None, samples: int, error: float, seconds: float) -> tuple[str, ...]:
-    """A warning where the target was not reached."""
-    if target is None or error <= target:
+def says(target: float | None, samples: int, error: float, seconds: float, left: float = 0.0) -> tuple[str, ...]:
+    """A warning where the target was not reached; ``left``: the part of the error that knobs leave."""
+    if target is None or error <= target * (1.0 + 1e-9):
         return ()
-    return (f"max_error {target:g} was not reached: {reached(samples, error, seconds)}; begin with more samples",)
+    if left > 0.5 * target:
+        hint = f"about {left:.2g} of it is what the knobs that were turned leave: turn them up"
+    else:
+        hint = "begin with more samples"
+    return (f"max_error {target:g} was not reached: {reached(samples, error, seconds)}; {hint}",)
 
 
 def reached(samples: int, error: float, seconds: float) -> str:

@@ -23,7 +23,7 @@ from ..plan.cost.shares import LIGHT, SET
 from ..plan.cost.work import Work, of_table, work
 from ..render.launch import film_arrays, launcher, loaded
 from ..render.progress import Progress, silent
-from ..render.renderer import simulate_table
+from ..render.tables import simulate_table
 from ..render.tiles import run, tiles
 from ..scene import Scene, Settings
 from ..whole import whole
@@ -31,20 +31,23 @@ from .report import machine
 
 # Nanoseconds that a fit begins with and falls back to where no stage tells.
 PRIOR: dict[str, float] = {
-    "camera": 400.0, "camera.triangles": 300.0, "base": 300.0, "shadows": 160.0, "scratches.table": 100.0,
-    "lights.closedForm": 300.0, "lights.coneTaps": 15.0, "lights.sampled": 200.0, "diffraction.segments": 60.0,
-    "diffraction.bands": 200.0, "grooves": 6000.0, "grooves.crossings": 3000.0, "grooves.paths": 5000.0,
+    "camera": 600.0, "camera.triangles": 500.0, "base": 150.0, "shadows": 160.0, "scratches.table": 100.0,
+    "lights.closedForm": 300.0, "lights.coneTaps": 15.0, "lights.sampled": 200.0, "diffraction.segments": 1000.0,
+    "diffraction.bands": 200.0, "grooves": 1000.0, "grooves.crossings": 120.0, "grooves.paths": 100.0,
     "tables.table": 3e7, "tables.cell": 50.0, "tables.ray": 300.0, "tables.rayBounced": 600.0,
     "build.triangles": 3000.0, "build.pixels": 100.0, "build.kernel": 5e7, "build.strokes": 20000.0,
     **{f"lights.{name}": float(ns) for name, ns in LIGHT.items()},
     **{f"scratches.{name}": float(ns) for name, ns in SET.items()}, **UNMEASURED,
 }  # fmt: skip
 STAGES = (
-    "ball", "plain", "panel", "gold", "plastic", "patterns", "disc", "roof", "grooves_parallel", "grooves_crossing"
+    "ball", "plain", "panel", "gold", "plastic", "patterns", "spoon", "disc", "roof", "grooves_parallel",
+    "grooves_crossing",
 )  # fmt: skip
 """Demo stages that prices are fitted to; the others are for testing them."""
-RIDGE = 0.02
+RIDGE = 0.1
 """Weight of the prior beside that of one stage."""
+TABLE_SIZES = ((32, 16), (64, 128), (128, 32), (256, 16), (256, 512))
+"""(resolution, rays) of tables that are measured besides the default."""
 VARIANTS: tuple[dict[str, bool], ...] = (
     {},
     {"shadows": False},
@@ -110,6 +113,19 @@ def fitted(rows: Sequence[Mapping[str, float]], seconds: Sequence[float], ridge:
     return {unit: float(1e9 * p * v) for unit, p, v in zip(units, prior, x, strict=True)}
 
 
+def measured_tables(scene: Scene) -> list[tuple[Mapping[tuple[str, str], float], float]]:
+    """(units, processor seconds) of the first tables of a scene at other resolutions and numbers of rays."""
+    plan = make_plan(scene, Settings(width=8, threads=1))
+    rows: list[tuple[Mapping[tuple[str, str], float], float]] = []
+    for table in plan.tables[:3]:
+        for resolution, rays in TABLE_SIZES:
+            sized = replace(table, resolution=resolution, rays=rays, parts=table.parts[:3])
+            start = time.process_time()
+            simulate_table(sized, 1)
+            rows.append((of_table(sized), time.process_time() - start))
+    return rows
+
+
 def _plain(units: Mapping[tuple[str, str], float], factor: float = 1.0) -> dict[str, float]:
     made: dict[str, float] = {}
     for (_, unit), count in units.items():
@@ -117,29 +133,33 @@ def _plain(units: Mapping[tuple[str, str], float], factor: float = 1.0) -> dict[
     return made
 
 
-def prices(samples: Sequence[Sample]) -> tuple[dict[str, float], float, float]:
+def prices(
+    samples: Sequence[Sample], more_tables: Sequence[tuple[Mapping[tuple[str, str], float], float]] = ()
+) -> tuple[dict[str, float], float, float]:
     """(nanoseconds of every unit, price of the work of later surfaces of paths, spread of predictions)."""
-    direct = [s for s in samples if s.counted.indirect == 0.0]
-    found = fitted([_plain(s.counted.each, s.counted.samples) for s in direct], [s.trace for s in direct])
-    tables = [row for s in samples for row in s.simulate]
+
+    def counted(s: Sample, later: float) -> dict[str, float]:
+        units = _plain(s.counted.each, s.counted.samples)
+        more = 1.0 + later * s.counted.indirect
+        return {unit: n if unit.startswith("camera") else n * more for unit, n in units.items()}
+
+    taken = [s.trace for s in samples]
+    later, found = 0.6, dict[str, float]()
+    for _ in range(4 if any(s.counted.indirect for s in samples) else 1):
+        found = fitted([counted(s, later) for s in samples], taken)
+        ratios = []
+        for s in (s for s in samples if s.counted.indirect > 0.0):
+            first = sum(1e-9 * found[u] * n for u, n in counted(s, 0.0).items())
+            once = sum(1e-9 * found[u] * n for u, n in counted(s, 0.0).items() if not u.startswith("camera"))
+            ratios.append(max(s.trace - first, 0.05 * once) / max(once * s.counted.indirect, 1e-12))
+        later = float(np.median(ratios)) if ratios else later
+    off = [abs(np.log(s.trace / max(sum(1e-9 * found[u] * n for u, n in counted(s, later).items()), 1e-9)))
+           for s in samples]  # fmt: skip
+    tables = [*more_tables, *(row for s in samples for row in s.simulate)]
     if tables:
         found |= fitted([_plain(units) for units, _ in tables], [seconds for _, seconds in tables])
     found |= fitted([_plain(s.counted.build) for s in samples], [s.build for s in samples])
-
-    def predicted(s: Sample) -> tuple[float, float]:
-        each = _plain(s.counted.each, 1e-9 * s.counted.samples)
-        first = sum(found.get(unit, 0.0) * n for unit, n in each.items())
-        seen = sum(found.get(unit, 0.0) * n for unit, n in each.items() if not unit.startswith("camera"))
-        return first, seen * s.counted.indirect
-
-    ratios = []
-    for s in samples:
-        first, later = predicted(s)
-        if later > 0.0:
-            ratios.append(max(s.trace - first, 0.05 * later) / later)
-    indirect = float(np.median(ratios)) if ratios else 1.0
-    off = [abs(np.log(s.trace / max(sum((p[0], indirect * p[1])), 1e-9))) for s in samples if (p := predicted(s))]
-    return found, indirect, float(np.exp(np.quantile(off, 0.9)))
+    return found, later, float(np.exp(np.quantile(off, 0.9)))
 
 
 def efficiency() -> float:
@@ -180,7 +200,7 @@ def calibrate(
         progress(number, len(jobs), f"calibrate {name}")
         samples.append(measured(name, scene, Settings(width=width, threads=1, effects=forced, **more)))
     progress(len(jobs), len(jobs), "calibrate")
-    found, indirect, spread = prices(samples)
+    found, indirect, spread = prices(samples, [row for _, scene in known for row in measured_tables(scene)])
     cold = (4.0, 0.3)
     if compile_stage is not None:
         plan = make_plan(known[0][1], Settings(width=8))

@@ -31,6 +31,7 @@ ROOMS = (
     "arguments",
     "sections",
     "shots",
+    "studies",
     "cli",
     "__main__",
 )

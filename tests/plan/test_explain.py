@@ -46,7 +46,8 @@ def test_prims_are_named_three_at_most():
 
 def test_numbers_and_warnings_follow():
     plan = sw.make_plan(
-        S.scene([S.sphere(8, 16)], [S.scratched()], [S.dome()]), sw.Settings(width=64, spp=3, max_error=0.02)
+        S.scene([S.sphere(8, 16)], [S.scratched()], [S.dome()]),
+        sw.Settings(width=64, spp=3, max_error=0.02, quality="preview"),
     )
     text = plan.explain()
     assert "image: 64 x 64 pixels" in text and "3 samples each" in text

@@ -1,9 +1,13 @@
 """Rendering to an error target."""
 
+from contextlib import suppress
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from scratchwarp.render import target
+import scratchwarp as sw
+from scratchwarp.render import Control, target
 from scratchwarp.render.target import remaining, until
 
 from . import scenes as S
@@ -104,3 +108,34 @@ def test_a_film_with_a_target_is_the_film_of_as_many_samples():
     assert all(np.array_equal(made[name], again[name]) for name in made)
     assert np.array_equal(made["error"], np.sqrt(made["variance"]))
     assert (made["error"] < first["error"]).mean() > 0.5
+
+
+def test_a_render_to_a_target_chooses_knobs_and_goes_on_after_an_interruption(tmp_path):
+    """To the same bits, wherever it was stopped: after the first pass, in the middle of a later one, at the end of one.
+    A crop of it stops by itself."""
+    scene = world()
+    knobs = {"tables.bounces": 1}  # what is lost makes noise: a mirror under an even sky has none
+    asked = sw.Settings(width=24, height=24, tile=8, threads=1, filter="box", max_error=0.03, effects=S.EVERYTHING,
+                        knobs=knobs)  # fmt: skip
+    plan = sw.make_plan(scene, asked)
+    whole = sw.render(scene, plan)
+    assert plan.aim.first == 2 < whole.metadata["scratchwarp:spp"]
+    assert plan.aim.bias < whole.stats["error"] <= 0.03
+    file = tmp_path / "part"
+    for stop in (5, 9, 13, 18):
+        control = Control()
+        count = [0]
+
+        def progress(done, total, what, control=control, count=count, stop=stop):
+            count[0] += what == "trace"
+            if count[0] > stop:
+                control.stop.set()
+
+        with suppress(KeyboardInterrupt):
+            sw.render(scene, plan, progress=progress, checkpoint=file, control=control, keep=True)
+        assert control.stop.is_set()
+        again = sw.render(scene, plan, checkpoint=file, resume=True)
+        assert again.metadata["scratchwarp:spp"] == whole.metadata["scratchwarp:spp"]
+        assert all(np.array_equal(whole[name], again[name]) for name in whole)
+    part = sw.make_plan(scene, replace(asked, crop=(0.25, 0.75, 0.25, 0.75)))
+    assert sw.render(scene, part).stats["error"] <= 0.03

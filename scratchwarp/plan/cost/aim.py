@@ -75,14 +75,17 @@ def aim(
         cost = forecast(scene, _turned(plan, knobs), prices, seen)
         traced.append((knobs, bias, cost.part("trace") / spp))
     best: tuple[float, float, Aim] | None = None
+    least = fixed + min(bias for _, bias, _ in tables) + min(bias for _, bias, _ in traced)
     for (own, bias, once), (others, more, each) in product(_front(tables), _front(traced)):
         whole = fixed + bias + more
-        noise = max(target - whole, 0.5 * target)
-        count = samples or wanted(noise, left)
-        seconds = once + each * count
+        if whole > max(BIAS_SHARE * target, least):
+            continue
+        noise = max(target - whole, (1.0 - BIAS_SHARE) * target)
+        seconds = once + each * (samples or needed(noise, left))
         if best is None or (seconds, whole) < best[:2]:
             chosen: dict[str, Value] = {**own, **others}
             number = len(tables) * len(traced)
+            count = samples or wanted(noise, left)
             first = samples or min(FIRST, count)
             best = seconds, whole, Aim(target, whole, noise, first, chosen, count, seconds, number)
     assert best is not None  # there is always the reference
@@ -90,12 +93,17 @@ def aim(
 
 
 def wanted(noise: float, left: Errors) -> int:
-    """Samples a pixel that leave a typical image this much noise: a power of two."""
-    one, power = left.noise
-    count, needed = FIRST, (one / noise) ** (1.0 / power)
-    while count < min(needed, MOST):
+    """``needed``, up to the next power of two."""
+    count = FIRST
+    while count < min(needed(noise, left), MOST):
         count *= 2
     return count
+
+
+def needed(noise: float, left: Errors) -> float:
+    """Samples a pixel that leave a typical image this much noise."""
+    one, power = left.noise
+    return float((one / noise) ** (1.0 / power))
 
 
 def _combinations(names: list[str], left: Errors, most: float) -> Iterator[tuple[dict[str, Value], float]]:

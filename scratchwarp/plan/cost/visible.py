@@ -27,9 +27,11 @@ def visible(scene: Scene, size: tuple[int, int], window: tuple[int, int, int, in
     camera = scene.camera
     left, right, bottom, top = camera.window(*size, scene.options.conform, scene.options.pixel_aspect)
     local = (corners - camera.transform[:3, 3]) @ camera.transform[:3, :3]
+    near = max(NEAR * float(np.abs(local[..., 2]).max()), camera.near, 1e-12)
+    local, materials = _before(local, materials, near)
+    if not len(local):
+        return shares
     depth = -local[..., 2]
-    inside = depth.min(axis=1) > max(NEAR * float(np.abs(depth).max()), camera.near)
-    depth = np.maximum(depth, NEAR)
     flat = local[..., :2] / (depth[..., None] if camera.projection == "perspective" else 1.0)
     px = ((flat[..., 0] - left) / (right - left) * size[0] - x0) / (x1 - x0) * columns
     py = ((top - flat[..., 1]) / (top - bottom) * size[1] - y0) / (y1 - y0) * rows
@@ -37,7 +39,7 @@ def visible(scene: Scene, size: tuple[int, int], window: tuple[int, int, int, in
     found = np.full((rows, columns), -1)
     low = np.stack([px.min(1), py.min(1)], 1)
     high = np.stack([px.max(1), py.max(1)], 1)
-    on = inside & (high[:, 0] > 0) & (high[:, 1] > 0) & (low[:, 0] < columns) & (low[:, 1] < rows)
+    on = (high[:, 0] > 0) & (high[:, 1] > 0) & (low[:, 0] < columns) & (low[:, 1] < rows)
     small = on & ((high - low).max(1) < 1.0)
     middles = np.floor(np.stack([px[small].mean(1), py[small].mean(1)], 1)).astype(int)
     far = depth[small].mean(1)
@@ -51,6 +53,24 @@ def visible(scene: Scene, size: tuple[int, int], window: tuple[int, int, int, in
     for material in np.unique(found[found >= 0]):
         shares[material] = float((found == material).mean())
     return shares
+
+
+def _before(local: np.ndarray, materials: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray]:
+    """Triangles [n, 3, 3] in the camera's frame, cut at ``near``."""
+    beyond = -local[..., 2] >= near
+    whole = beyond.all(axis=1)
+    made, owners = [local[whole]], [materials[whole]]
+    for k in np.flatnonzero(beyond.any(axis=1) & ~whole):
+        points: list[np.ndarray] = []
+        for a, b in zip(local[k], np.roll(local[k], -1, axis=0), strict=True):
+            if -a[2] >= near:
+                points.append(a)
+            if (-a[2] >= near) != (-b[2] >= near):
+                points.append(a + (near + a[2]) / (a[2] - b[2]) * (b - a))
+        fan = [np.stack([points[0], points[i], points[i + 1]]) for i in range(1, len(points) - 1)]
+        made.append(np.array(fan).reshape(-1, 3, 3))
+        owners.append(np.full(len(fan), materials[k]))
+    return np.concatenate(made), np.concatenate(owners)
 
 
 def _fill(x: np.ndarray, y: np.ndarray, z: np.ndarray, material: int, nearest: np.ndarray, found: np.ndarray) -> None:

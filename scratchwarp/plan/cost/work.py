@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 
 from ...lights.registry import MODELS
-from ...scene import PreviewSurface, Scene, TextureInput
+from ...scene import Layer, PreviewSurface, Scene, TextureInput
 from ..choice import EffectPlan, TablePlan
 from ..effects import integrated_lights, sampled_lights
+from ..occlusion import can_occlude
 from ..wave_effects import footprint_and_triangle
 from .visible import visible
 
@@ -61,7 +62,8 @@ def work(scene: Scene, plan: EffectPlan, seen: np.ndarray | None = None) -> Work
         ("diffraction", "build.strokes"): _strokes(scene, plan) if plan.on("diffraction.segments") else 0.0,
     }
     depth = plan.settings.max_depth or 1
-    indirect = min(depth - 1, BOUNCES) if plan.on("indirect") else 0.0
+    several = plan.on("indirect") and can_occlude(scene, plan.on("base.opacity"))  # not only grooves light one another
+    indirect = min(depth - 1, BOUNCES) if several else 0.0
     return Work(samples, each, tables, {k: v for k, v in build.items() if v}, indirect)
 
 
@@ -168,7 +170,7 @@ def _waves(scene: Scene, plan: EffectPlan, shares: np.ndarray) -> Units:
         return found
     lights = max(len(scene.lights), 1)
     footprint = 1e6 * footprint_and_triangle(scene, plan.settings, plan.waves)[0]
-    for share, own in zip(shares, plan.waves, strict=False):
+    for number, (share, own) in enumerate(zip(shares, plan.waves, strict=False)):
         for p in own.layers if own is not None else ():
             layer, count = p.layer, 1.0
             unit = "diffraction.bands"
@@ -177,11 +179,31 @@ def _waves(scene: Scene, plan: EffectPlan, shares: np.ndarray) -> Units:
             if layer.distribution in ("random", "worley", "curves"):
                 unit = "diffraction.segments"
                 reach = footprint + REACH * own.wave.coherence_radius
-                dense = layer.density * 1e-6 if layer.density > 0.0 else 1e-4
-                count = 1.0 + dense * reach * (reach + layer.length)
+                dense, length = _laid(scene, number, layer)
+                count = 1.0 + dense * reach * (reach + length)
             wide = 2.0 if plan.on("diffraction.areaLights") else 1.0
             found[unit, unit] = found.get((unit, unit), 0.0) + float(share) * count * lights * wide
     return found
+
+
+def _laid(scene: Scene, number: int, layer: Layer) -> tuple[float, float]:
+    """(scratches a square micrometre, their length [um]) of a layer of a material."""
+    if layer.distribution != "curves":
+        return (layer.density * 1e-6 if layer.density > 0.0 else 1e-4), layer.length
+    area = 0.0
+    for instance in scene.instances:
+        mesh = scene.meshes[instance.mesh]
+        if number in instance.materials and len(mesh.triangles):
+            corners = mesh.points[mesh.triangles] @ instance.transform[:3, :3].T
+            area += 0.5 * float(np.linalg.norm(np.cross(*np.moveaxis(np.diff(corners, axis=1), 1, 0)), axis=-1).sum())
+    side, strokes, whole = 1e6 * math.sqrt(max(area, 1e-20)), 0, 0.0
+    for record in (scene.curves[c] for c in layer.curves):
+        steps = np.linalg.norm(np.diff(record.points, axis=0), axis=1)
+        ends = np.cumsum(record.counts)[:-1] - 1
+        steps[ends[ends < len(steps)]] = 0.0
+        strokes += len(record.counts)
+        whole += float(steps.sum()) * (side if record.space == "uv" else 1e6)
+    return strokes / side**2, whole / max(strokes, 1)
 
 
 def _strokes(scene: Scene, plan: EffectPlan) -> float:
@@ -200,7 +222,9 @@ def _grooves(scene: Scene, plan: EffectPlan, shares: np.ndarray) -> Units:
     for share, own in zip(shares, plan.grooves, strict=False):
         if own is not None:
             lights = max(len(scene.lights), 1)
+            points = sum(len(p.section) for p in own.layers) / 4.0  # facets under a footprint
             unit = "grooves.crossings" if crossing else "grooves"
-            found[unit, unit] = found.get((unit, unit), 0.0) + float(share) * lights * lines * len(own.layers)
-            found["grooves", "grooves.paths"] = found.get(("grooves", "grooves.paths"), 0.0) + float(share) * bounces
+            paths = ("grooves", "grooves.paths")
+            found[unit, unit] = found.get((unit, unit), 0.0) + float(share) * lights * lines * points
+            found[paths] = found.get(paths, 0.0) + float(share) * bounces * points
     return found

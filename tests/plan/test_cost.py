@@ -1,0 +1,135 @@
+"""What a render is predicted to cost, and which knobs an error buys."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import scratchwarp as sw
+from scratchwarp.plan.cost import forecast, models
+from scratchwarp.plan.cost.aim import BIAS_SHARE, aim, wanted
+from scratchwarp.plan.cost.models import Costs, Errors
+from scratchwarp.plan.cost.visible import visible
+from scratchwarp.plan.cost.work import of_table, work
+
+from ..render import scenes as S
+
+ONE = Costs({}, "a machine on which every unit takes 100 ns", spread=1.5)
+LEFT = Errors(
+    {
+        "tables.resolution": {"64": 0.02, "128": 0.004, "256": 0.001, "512": 0.0},
+        "tables.rays": {"32": 0.003, "512": 0.0},
+    },
+    (0.5, 1.0),
+)
+
+
+def world(**fields):
+    return S.scene([S.sphere(16, 32)], [S.scratched(fresnel="exact", material="conductor", metal="gold")], [S.dome()],
+                   **fields)  # fmt: skip
+
+
+def plan(scene=None, **settings):
+    return sw.make_plan(scene or world(), sw.Settings(**{"width": 64, "height": 64, "threads": 1, **settings}))
+
+
+def test_a_sphere_fills_its_disc():
+    """Radius 1 at 6 m, 20 mm of aperture at 50 mm: its rim is seen at tan asin(1/6) = 0.169 of 0.2, so that it fills
+    pi / 4 times 0.845 squared = 0.561; cells are a 48th of the image wide."""
+    shares = visible(world(), (64, 64), (0, 64, 0, 64))
+    assert shares == pytest.approx([0.561], abs=0.03)
+    assert visible(world(), (64, 64), (24, 40, 24, 40)) == pytest.approx([1.0])
+    assert visible(world(), (64, 64), (0, 4, 0, 4)) == pytest.approx([0.0])
+
+
+def test_the_nearest_counts_and_what_crosses_the_camera_is_cut():
+    floor = S.plane(40.0, axis="y", path="/floor")
+    scene = S.scene(
+        [S.sphere(16, 32), floor], [S.scratched(), S.scratched()], [S.dome()],
+        instances=[S.place(0, 0, (0, 0, -6)), S.place(1, 1, (0, -0.5, 0))],
+    )  # fmt: skip
+    ball, ground = visible(scene, (64, 64), (0, 64, 0, 64))
+    whole = visible(replace(scene, instances=scene.instances[1:]), (64, 64), (0, 64, 0, 64))[1]
+    assert 0.3 < whole < 0.5  # below the horizon, up to 20 m away
+    assert ball > 0.3 and ground == pytest.approx(whole - 0.18, abs=0.1)
+
+
+def test_work_grows_with_what_there_is_to_do():
+    one = work(world(), plan(spp=4))
+    two = work(world(), plan(spp=8))
+    assert two.samples == 2 * one.samples == 64 * 64 * 8 and dict(two.each) == dict(one.each)
+    lit = work(replace(world(), lights=(*world().lights, S.dome(2.0))), plan(spp=4))
+    assert lit.each["lights.dome", "lights.dome"] == 2 * one.each["lights.dome", "lights.dome"]
+    table = plan().tables[0]
+    rays = ("scratches.interreflection", "tables.rayBounced")
+    assert of_table(replace(table, rays=2 * table.rays))[rays] == 2 * of_table(table)[rays]
+
+
+def test_a_forecast_adds_up_and_says_so():
+    made = plan(spp=4)
+    found = forecast(world(), made, ONE)
+    counted = work(world(), made)
+    assert found.part("trace") == pytest.approx(counted.samples * sum(counted.each.values()) * 1e-7)
+    assert found.seconds == pytest.approx(sum(found.part(part) for part in ("simulate", "build", "trace")))
+    assert set(found.record()["effects"]) == {"simulate", "build", "trace"}
+    said = found.text({"simulate": 1.0, "trace": 2.0, "compile": 3.0})
+    assert "lights.dome" in said and "a factor of 1.5" in said and "took 2 s" in said
+    assert forecast(world(), replace(made, settings=replace(made.settings, threads=2)), ONE).seconds < found.seconds
+
+
+def test_every_effect_with_a_price_is_an_effect_or_a_part_of_every_render():
+    counted = work(world(), plan())
+    names = {effect for units in (counted.each, counted.tables, counted.build) for effect, _ in units}
+    assert names <= set(plan().effects) | {"camera", "base", "geometry", "kernel", "scratches.responses"}
+
+
+def test_an_error_is_bought_at_the_lowest_price():
+    made = plan(max_error=0.02, quality="preview")
+    found = aim(world(), made, {}, None, ONE, LEFT)
+    assert found.bias <= BIAS_SHARE * 0.02 and found.noise == pytest.approx(0.02 - found.bias)
+    # 64 bins alone take more than half of the error
+    assert found.knobs["tables.resolution"] in (128, 256) and found.samples == wanted(found.noise, LEFT)
+    for bins in (128, 256, 512):
+        for rays in (32, 512):
+            knobs = {"tables.resolution": bins, "tables.rays": rays}
+            turned = plan(max_error=0.02, quality="preview", knobs=knobs)
+            assert aim(world(), turned, knobs, None, ONE, LEFT).seconds >= 0.999 * found.seconds
+    assert found.combinations >= 4
+    given = aim(world(), made, {"tables.resolution": 512}, 7, ONE, LEFT)
+    assert "tables.resolution" not in given.knobs and given.samples == given.first == 7
+
+
+def test_tight_errors_take_the_reference():
+    found = aim(world(), plan(max_error=1e-5, quality="preview"), {}, None, ONE, LEFT)
+    assert found.knobs == {"tables.resolution": 512, "tables.rays": 512} and found.bias == 0.0
+
+
+def test_a_plan_with_a_target_chooses_its_knobs_and_says_so():
+    loose, tight = plan(max_error=0.1), plan(max_error=0.003)
+    assert loose.aim.first == 2 and loose.settings.spp < tight.settings.spp
+    assert loose.tables[0].resolution < tight.tables[0].resolution
+    assert loose.tables[0].rays <= tight.tables[0].rays
+    assert "combinations" in tight.explain() and "samples grow from 2" in tight.explain()
+    kept = plan(max_error=0.1, knobs={"tables.rays": 512}, spp=8)
+    assert kept.tables[0].rays == 512 and kept.settings.spp == kept.aim.first == 8
+    assert plan(max_error=0.1, quality="draft").aim is None
+
+
+def test_prices_of_the_user_go_before_those_shipped(tmp_path, monkeypatch):
+    monkeypatch.setenv("SCRATCHWARP_CACHE", str(tmp_path))
+    shipped = models.costs()
+    assert "costs.json" in shipped.source and shipped.of("camera") > 0.0
+    record = {"format": models.FORMAT, "machine": "mine", "nanoseconds": {"camera": 7.0}, "cold": [1, 2],
+              "indirect": 1.0, "spread": 2.0, "efficiency": 1.0}  # fmt: skip
+    models.user_file().write_text(json.dumps(record))
+    assert models.costs().machine == "mine" and models.costs().of("camera") == pytest.approx(7e-9)
+    models.user_file().write_text("{")
+    assert models.costs().machine == shipped.machine
+
+
+def test_shipped_errors_fall_from_value_to_value():
+    left = models.errors()
+    for name, values in left.bias.items():
+        assert np.all(np.diff(list(values.values())) <= 0.0), name
+        assert list(values.values())[-1] == 0.0, name
