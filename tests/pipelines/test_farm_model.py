@@ -3,13 +3,12 @@
 import json
 import math
 import re
+from pathlib import Path
 
 import pytest
 
 from scratchwarp import arguments
 from scratchwarp.pipelines.farm_model import Costs, main, simulated
-
-from pathlib import Path
 
 EVEN = Costs(width=256, height=256, spread=0.0, slow=0.0, dies=0.0, scene=0.0, ready=0.0, task=0.0, pixel=0.0)
 
@@ -46,7 +45,9 @@ def test_command(capsys):
 
 def test_the_job_template_fits_the_command_line():
     """Every name in braces is defined, and what it runs is understood."""
-    template = json.loads((Path(__file__).resolve().parents[2] / "docs" / "farm.openjd.json").read_text(encoding="utf-8"))
+    template = json.loads(
+        (Path(__file__).resolve().parents[2] / "docs" / "farm.openjd.json").read_text(encoding="utf-8")
+    )
     assert template["specificationVersion"] == "jobtemplate-2023-09" and len(template["name"]) <= 128
     given = {p["name"]: p for p in template["parameterDefinitions"]}
     assert all(p["type"] in ("STRING", "INT", "FLOAT", "PATH") for p in given.values())
