@@ -73,7 +73,7 @@ def intersect(g: Geometry, origin: wp.vec3, direction: wp.vec3, max_t: float) ->
             s.light = g.light[face]
             size = wp.max(wp.max(wp.max(wp.abs(a[0]), wp.abs(a[1])), wp.abs(a[2])), wp.length(b - a))
             size = wp.max(size, wp.max(wp.max(wp.abs(s.p[0]), wp.abs(s.p[1])), wp.abs(s.p[2])))
-            s.offset = 4.0e-6 * size
+            s.offset = 1.0e-6 * size
     return s
 
 

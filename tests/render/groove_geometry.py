@@ -4,10 +4,12 @@ Grooves are half a period wide and a quarter deep, at y = (i + 1/4) periods, and
 Mitsuba's sheet has a period of 100, for its offsets are absolute; ours one of 200 micrometres.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 import scratchwarp as sw
-from scratchwarp.scene import Camera, DistantLight, DomeLight, ScratchSurface
+from scratchwarp.scene import Camera, DistantLight, DomeLight, Mesh, ScratchSurface
 
 from . import scenes
 from .mitsuba_reference import T, film, matrix, mi, rgb, shoot
@@ -103,6 +105,17 @@ def ours(crossing, surface, sun, sky, pixels, spp, effects=None, **fields):
     """The film of the sheet by us."""
     scene = world(crossing, surface, sun, sky, **fields)
     return sw.render(scene, sw.make_plan(scene, settings(pixels, spp, effects)))
+
+
+def twin(crossing, surface, sun, sky, pixels, spp):
+    """The film by us of the true sheet: its triangles, path traced."""
+    scene = world(crossing, surface, sun, sky)
+    points, faces = triangles(crossing)
+    bare = replace(scene.materials[0], layers=())
+    scene = replace(scene, meshes=(Mesh("/true", points * (2e-4 / PERIOD), faces),), materials=(bare,))
+    asked = settings(pixels, spp, {"lights.dome": True, "lights.distant": True})
+    asked = replace(asked, integrator="path", max_depth=16)
+    return sw.render(scene, sw.make_plan(scene, asked))
 
 
 def settings(pixels, spp, effects=None):
