@@ -34,7 +34,8 @@ LENGTH = 0.004
 # one kernel for all tests: its code does not depend on which of these lights are there
 LIGHTS = {f"lights.{name}": True for name in ("distant", "sphere", "rect", "disk", "cylinder", "mesh", "dome")}
 COMPILED = {**LIGHTS, "shadows": True}
-WAVES = ("lists", "hierarchy", "areaLights", "segments", "bands", "coherent", "lookup", "outlines", "angles", "pairs")
+WAVES = ("lists", "hierarchy", "areaLights", "segments", "bands", "coherent", "lookup", "outlines", "angles")
+WAVES += ("pairs", "masks", "orientation")
 COMPILED |= {f"diffraction.{name}": True for name in WAVES}
 
 
