@@ -115,7 +115,7 @@ def band_strand(
             y = y + band.offset * band.pitch - wp.float64(0.5) * band.width
             at = y - wp.rint(y / band.pitch) * band.pitch
             r.length = band.share * lines_held(1.0e6 * float(at) / a_rate, 1.0e6 * wp.sqrt(c_vv), pitch)
-            r.part = 1.0
+            r.part = band.share
             r.variance = c_tt
             r.frame = frame_with_tangent(n, t)
             if band.kind != LINEAR and round > 0.0:

@@ -123,7 +123,7 @@ def test_depths_vary_along_scratches():
     assert made.depths.min() < 0.55 and made.depths.max() > 1.45
     assert np.histogram(made.depths, 4, (0.5, 1.5))[0].min() > 0.1 * len(run)
     np.testing.assert_allclose(made.depths[8:], made.depths[:-8], atol=0.15)
-    assert (made.widths == 3.0).all()
+    np.testing.assert_allclose(made.widths, 3.0, rtol=1e-12)
 
 
 def test_pattern_with_variation_is_the_mean_of_its_lines():
