@@ -268,10 +268,7 @@ def make_bounce(key: KernelKey, rotated, emission_at):
         if wp.static(key.emission):
             total += emission_at(arrays, m, s.uv)
         if wp.static(key.mesh_lights):
-            sought = s.light >= 0 and s.outside == 1
-            if wp.static(key.glint_paths):
-                sought = sought and lobe.scratch != 5
-            if sought:
+            if s.light >= 0 and s.outside == 1:
                 total += mesh_glow(lights, s, origin, direction, distance, lobe, pdf, phi, depth)
         return total
 

@@ -77,15 +77,15 @@ def shared(key):
     more = {"lights": tuple(m.name for m in MODELS.values()), "filter": "box"}
     if key.distributions:
         more["distributions"] = tuple(KINDS)
-        names += ("diffuse_scratches", "variation", "masks", "tints", "orientations", "closed_form", "cone_taps")
-        names += ("sample_lights", "sample_cones")
+        names += ("diffuse_scratches", "variation", "masks", "tints", "orientations")
+        more["cone_taps"] = key.closed_form
     if key.responses:
         more["responses"] = tuple(n for n, r in RESPONSES.items() if key.distributions or r.base)
     if key.glints:
         names += ("glint_segments", "glint_lists", "glint_hierarchy", "glint_bands", "glint_gratings", "glint_areas")
         names += ("glint_lookup", "glint_numeric")
     if key.grooves:
-        names += ("groove_crossings", "groove_bounces")
+        names += ("groove_crossings", "groove_bounces", "groove_glass")
     return replace(key, **more, **dict.fromkeys(names, True))
 
 
@@ -153,6 +153,7 @@ def watched(bench):
 
     with (
         mock.patch.object(assembling, "kernel_key", lambda scene, plan: shared(real_key(scene, plan))),
+        mock.patch.object(rendering, "kernel_key", lambda scene, plan: shared(real_key(scene, plan))),
         mock.patch.object(rendering, "loaded", loaded),
         mock.patch.object(sw, "read", read),
         mock.patch.object(sw, "render", render),

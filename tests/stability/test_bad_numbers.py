@@ -3,7 +3,7 @@
 Records of a scene and every argument of the NumPy functions; what stages author is in ``test_bad_stages``.
 """
 
-from dataclasses import fields, replace
+from dataclasses import fields, is_dataclass, replace
 
 import numpy as np
 import pytest
@@ -85,7 +85,7 @@ def test_records_refuse_what_is_no_number(kind, name):
 
 
 def test_every_record_is_here():
-    records = {n for n in scene.__all__ if isinstance(getattr(scene, n), type)}
+    records = {n for n in scene.__all__ if is_dataclass(getattr(scene, n))}
     others = {
         "Control",
         "Light",

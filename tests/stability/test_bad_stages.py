@@ -10,6 +10,7 @@ from pxr import Gf, Sdf
 import scratchwarp as sw
 from scratchwarp.scene import StageError
 
+from ..render import scenes
 from . import stages
 from .test_scenes import finite
 
@@ -125,7 +126,7 @@ def test_transforms_over_time(tmp_path):
     path = tmp_path / "stage.usda"
     lights = stages.LIGHTS["sun"] + stages.LIGHTS["even sky"]
     path.write_text(stages.HEADER + stages.MOVING + lights + stages.CAMERA.replace("STOP", "0"))
-    settings = sw.Settings(width=16, height=16, spp=4, filter="box")
+    settings = sw.Settings(width=16, height=16, spp=4, filter="box", effects=scenes.EVERYTHING)
     seen = {}
     for frame in (1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 9.0):
         scene = sw.read(path, frame=frame)

@@ -117,7 +117,11 @@ def image(scene, plan):
         with mock.patch.object(wp.config, "optimization_level", 0):
             return loaded(*args)
 
-    with mock.patch.object(assembling, "kernel_key", everything), mock.patch.object(rendering, "loaded", unoptimised):
+    with (
+        mock.patch.object(assembling, "kernel_key", everything),
+        mock.patch.object(rendering, "kernel_key", everything),
+        mock.patch.object(rendering, "loaded", unoptimised),
+    ):
         return sw.render(scene, plan)
 
 
