@@ -122,6 +122,9 @@ def _glint_fields(plan: EffectPlan) -> dict[str, Any]:
         "glint_numeric": plan.on("diffraction.outlines") or plan.on("diffraction.angles"),
         "glint_areas": plan.on("diffraction.areaLights"),
         "glint_pairs": segments and plan.on("diffraction.pairs"),
+        "glint_paths": plan.on("indirect"),
+        "glint_masks": plan.on("diffraction.masks"),
+        "glint_orientations": plan.on("diffraction.bands") and plan.on("diffraction.orientation"),
         "glint_method": "paper" if plan.on("diffraction.paperLights") else method,
     }
 
@@ -242,7 +245,7 @@ def assemble(
     waved = tuple(tuple(x.layer.label for x in w.layers) if w is not None else () for w in plan.waves)
     sparkle = parts.part(
         "glints",
-        (digest(scene.materials, key, waved), scene.curves, scene.meshes, placed) if key.glints else (),
+        (digest(scene.materials, key, waved), scene.curves, scene.meshes, scene.textures, placed) if key.glints else (),
         lambda: glints.pack(scene, plan, key, shape, device),
     )
     scratch_set.glints = sparkle.arrays

@@ -268,7 +268,10 @@ def make_bounce(key: KernelKey, rotated, emission_at):
         if wp.static(key.emission):
             total += emission_at(arrays, m, s.uv)
         if wp.static(key.mesh_lights):
-            if s.light >= 0 and s.outside == 1:
+            sought = s.light >= 0 and s.outside == 1
+            if wp.static(key.glint_paths):
+                sought = sought and lobe.scratch != 5
+            if sought:
                 total += mesh_glow(lights, s, origin, direction, distance, lobe, pdf, phi, depth)
         return total
 

@@ -278,6 +278,10 @@ def make_direct(key: KernelKey, transmittance):
                         # the scratch has counted this light already
                         if lobe.scratch == 1 and pdf > 0.0:
                             wanted = False
+                    if wp.static(key.glint_paths):
+                        # a diffracting scratch has, too
+                        if lobe.scratch == 5:
+                            wanted = False
                     if wanted:
                         hit = wp.static(models[j].hit)(lights.arrays, light, p, w)
                         if hit.distance >= gone and hit.distance < reach:

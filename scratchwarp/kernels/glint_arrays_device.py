@@ -5,6 +5,7 @@ import warp as wp
 from ..optics.frames_device import Frame
 from ..reflectance.diffraction.quadrature_device import Rules
 from ..scratches.segments_device import Segment
+from .maps_device import MapSet
 
 wp.set_module_options({"enable_backward": False})
 
@@ -36,7 +37,7 @@ class WaveLayer:
         wide, wide_depths, wide_reaches, depth_first, depth_step, reach_step: its table in ``GlintArrays.wides``
             (``wide_depths`` 0: none), see ``wide_integral``.
         outline, facets: rows of its cross-section in ``GlintArrays.outlines``, none for a rectangle.
-        angles: 1 where the phase that the depth gives depends on the directions.
+        angles: 1 where the phase that the depth gives depends on the directions. maps: in ``GlintArrays.maps``, or -1.
     """
 
     wave: int
@@ -56,12 +57,15 @@ class WaveLayer:
     outline: int
     facets: int
     angles: int
+    maps: int
 
 
 @wp.struct
 class BandData:
     """A regular pattern; lengths in pattern units as in ``scratches.layer_device``. ``layer``: in
-    ``GlintArrays.layers``; ``coherent``: its lines interfere; ``depth_um``: 1 where the depth is in micrometres."""
+    ``GlintArrays.layers``; ``coherent``: its lines interfere; ``cos_a``, ``sin_a``: the way they run, ``cos_y``,
+    ``sin_y``: by which they are laid out; ``share``: part of the lines that it stands for; ``maps``: as in
+    ``WaveLayer``."""
 
     kind: int
     layer: int
@@ -74,6 +78,10 @@ class BandData:
     pitch: wp.float64
     offset: wp.float64  # pitches
     center: wp.vec2d
+    cos_y: float
+    sin_y: float
+    share: float
+    maps: int
 
 
 @wp.struct
@@ -114,6 +122,7 @@ class GlintArrays:
     bands: wp.array(dtype=BandData)
     spectrum: Spectrum
     rules: Rules
+    maps: MapSet
 
 
 @wp.struct
@@ -165,11 +174,14 @@ class Strand:
 
 @wp.struct
 class Glints:
-    """What diffraction adds at a point: radiance, what it leaves of the base, and the shadow rays that it took."""
+    """What diffraction adds at a point: radiance, what it leaves of the base, and the shadow rays that it took; where a
+    path may go on, and what it carries."""
 
     radiance: wp.vec3
     left: wp.vec3
     rays: float
+    way: wp.vec3
+    carried: wp.vec3
 
 
 @wp.func

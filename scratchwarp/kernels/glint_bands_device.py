@@ -79,7 +79,7 @@ def band_strand(
     qx = s.uv[0] * scale[0]
     qy = s.uv[1] * scale[1] * wp.float64(handed)
     across = wp.vec2(-band.sin_a, band.cos_a)
-    y = wp.float64(band.cos_a) * qy - wp.float64(band.sin_a) * qx
+    y = wp.float64(band.cos_y) * qy - wp.float64(band.sin_y) * qx
     round = float(0.0)
     if band.kind != LINEAR:
         dx = qx - band.center[0] * scale[0]
@@ -114,8 +114,8 @@ def band_strand(
             pitch = 1.0e6 * float(band.pitch) / a_rate
             y = y + band.offset * band.pitch - wp.float64(0.5) * band.width
             at = y - wp.rint(y / band.pitch) * band.pitch
-            r.length = lines_held(1.0e6 * float(at) / a_rate, 1.0e6 * wp.sqrt(c_vv), pitch)
-            r.part = 1.0
+            r.length = band.share * lines_held(1.0e6 * float(at) / a_rate, 1.0e6 * wp.sqrt(c_vv), pitch)
+            r.part = band.share
             r.variance = c_tt
             r.frame = frame_with_tangent(n, t)
             if band.kind != LINEAR and round > 0.0:

@@ -1,7 +1,7 @@
 """Layers that diffract -> device arrays: scratches cut to the triangles, wavelengths, reflectances."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -12,12 +12,14 @@ from ..plan import EffectPlan
 from ..plan.waves import REGULAR, WaveLayerPlan, is_grating, looks_up, reflectances
 from ..reflectance.diffraction.arrays import rules
 from ..reflectance.diffraction.color import spectral_samples
-from ..scene import Scene
+from ..scene import Curves, Scene
+from ..scratches.along import dealt, varied
 from ..scratches.generate import random_scratches
 from ..scratches.segments import SegmentSet, Stroke, build, surroundings
 from .geometry import PackedGeometry
 from .glint_arrays_device import BandData, GlintArrays, Spectrum, WaveLayer, WaveMaterial
 from .glint_energy_device import BINS
+from .glint_maps import GlintMaps, directions
 from .glint_tables import SHARES, bin_width, depth_shares, wavelengths_of, wide_table
 from .key import KernelKey
 
@@ -38,36 +40,53 @@ class PackedGlints:
         return self.segments.count if self.segments is not None else 0
 
 
+# material, layer, cross-section
+Numbered = tuple[int, int, int]
+
+
 def _strokes(
-    scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, numbers: dict[tuple[int, int], int]
+    scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, numbers: dict[Numbered, int]
 ) -> list[Stroke]:
     made: list[Stroke] = []
     material, instance = shape.arrays.material.numpy(), shape.arrays.instance.numpy()
     uv = shape.arrays.uvs.numpy().reshape(-1, 3, 2)
     scales = shape.arrays.pattern_scale.numpy()
-    for (m, k), number in numbers.items():
-        wave = plan.waves[m]
-        assert wave is not None
-        layer = wave.layers[k].layer
-        if layer.distribution in REGULAR or not key.glint_segments:
-            continue
-        taken = material == m
-        if layer.distribution == "curves":
-            made += [Stroke(scene.curves[c], number, taken) for c in layer.curves]
-            continue
-        for i in np.unique(instance[taken]):
-            own = taken & (instance == i)
-            low, high = uv[own].min((0, 1)), uv[own].max((0, 1))
-            scale = (1.0, 1.0) if layer.space == "uv" else tuple(scales[i])
-            laid = random_scratches(layer, tuple(low.tolist()), tuple(high.tolist()), scale)
-            made.append(Stroke(laid, number, own))
+    for m, wave in enumerate(plan.waves):
+        for k, own_plan in enumerate(wave.layers if wave is not None else ()):
+            layer, parts = own_plan.layer, len(own_plan.outlines)
+            taken = material == m
+            if layer.distribution in REGULAR or not key.glint_segments or not taken.any():
+                continue
+            laid: list[tuple[Curves, Any]] = []
+            if layer.distribution == "curves":
+                flat = scales[instance[taken][0]] if layer.space == "surface" else np.ones(2)
+                for c in layer.curves:
+                    curves = scene.curves[c]
+                    scale = np.full(3, 1e6) if curves.space == "object" else np.array([*flat, 1.0])
+                    laid.append((varied(curves, layer, scale, False), taken))
+            else:
+                for i in np.unique(instance[taken]):
+                    own = taken & (instance == i)
+                    low, high = uv[own].min((0, 1)), uv[own].max((0, 1))
+                    unit = (1.0, 1.0) if layer.space == "uv" else tuple(scales[i])
+                    field = directions(scene, plan, layer, shape.arrays, own)
+                    ends = tuple(low.tolist()), tuple(high.tolist())
+                    laid.append((random_scratches(layer, *ends, unit, field, True), own))
+            for curves, own in laid:
+                for v, part in enumerate(dealt(curves, layer, parts)):
+                    made.append(Stroke(part, numbers[m, k, v], own))
     return made
 
 
-def _bands(plan: EffectPlan, numbers: dict[tuple[int, int], int]) -> list[tuple[int, Any]]:
+# of a uniform spread over [-1, 1]: nodes, and weights that add up to 1
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
+_SPREAD = tuple(zip(_NODES.tolist(), (0.5 * _WEIGHTS).tolist(), strict=True))
+
+
+def _bands(plan: EffectPlan, numbers: dict[Numbered, int], mapped: GlintMaps) -> list[tuple[int, Any]]:
     """(material, record) of every regular pattern."""
     made: list[tuple[int, Any]] = []
-    for (m, k), number in numbers.items():
+    for (m, k, _), number in numbers.items():
         wave = plan.waves[m]
         assert wave is not None
         layer = wave.layers[k].layer
@@ -77,14 +96,20 @@ def _bands(plan: EffectPlan, numbers: dict[tuple[int, int], int]) -> list[tuple[
         if layer.distribution == "crosshatch":
             sets.append((layer.angle + layer.cross_angle, layer.offset[0]))
         for angle, offset in sets:
-            band: Any = BandData()
-            band.kind = {"concentric": 1, "spiral": 2}.get(layer.distribution, 0)
-            band.layer, band.uv_space = number, int(layer.space == "uv")
-            band.coherent = int(is_grating(wave.wave, layer))
-            band.cos_a, band.sin_a = math.cos(angle), math.sin(angle)
-            band.width, band.depth, band.pitch = layer.width, layer.depth, layer.pitch
-            band.offset, band.center = offset, wp.vec2d(*layer.center)
-            made.append((m, band))
+            straight = layer.distribution in ("linear", "crosshatch")
+            maps = mapped.number(layer, angle if straight else None)
+            for away, weight in _SPREAD if layer.width_variation > 0.0 else ((0.0, 1.0),):
+                band: Any = BandData()
+                band.kind = {"concentric": 1, "spiral": 2}.get(layer.distribution, 0)
+                band.layer, band.uv_space = number, int(layer.space == "uv")
+                band.coherent = int(is_grating(wave.wave, layer))
+                band.cos_a, band.sin_a = math.cos(angle), math.sin(angle)
+                band.cos_y, band.sin_y = band.cos_a, band.sin_a
+                band.width = layer.width * (1.0 + away * layer.width_variation)
+                band.depth, band.pitch = layer.depth, layer.pitch
+                band.offset, band.center = offset, wp.vec2d(*layer.center)
+                band.share, band.maps = weight / len(wave.layers[k].outlines), maps
+                made.append((m, band))
     return made
 
 
@@ -132,7 +157,7 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
     if not key.glints or shape.mesh is None:
         return PackedGlints(arrays, None)
     diffracting = [(m, w) for m, w in enumerate(plan.waves) if w is not None]
-    numbers = {(m, k): 0 for m, w in diffracting for k in range(len(w.layers))}
+    numbers = {(m, k, v): 0 for m, w in diffracting for k, x in enumerate(w.layers) for v in range(len(x.outlines))}
     numbers = {pair: number for number, pair in enumerate(numbers)}
     strokes = _strokes(scene, plan, key, shape, numbers)
     segments = None
@@ -149,7 +174,8 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
         arrays.segments, arrays.starts = segments.segments, segments.starts
         arrays.bvh = segments.bvh.id if segments.bvh is not None else 0
     which = np.full(max(len(scene.materials), 1), -1, np.int32)
-    bands = _bands(plan, numbers) if key.glint_bands else []
+    mapped = GlintMaps(key.glint_masks, key.glint_orientations)
+    bands = _bands(plan, numbers, mapped) if key.glint_bands else []
     if bands:
         arrays.bands = wp.array([b for _, b in bands], dtype=BandData, device=device)
         if key.glint_gratings:
@@ -179,13 +205,14 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
     wides: list[np.ndarray] = []
     outlines: list[np.ndarray] = []
     spectral = np.ones((len(numbers), COSINES, most), np.float32)
-    for (m, k), number in numbers.items():
+    for (m, k, v), number in numbers.items():
         w = plan.waves[m]
         assert w is not None
-        own = w.layers[k]
+        own = replace(w.layers[k], outline=w.layers[k].outlines[v], others=())
         row: Any = WaveLayer()
         row.wave, row.reflect, row.per_wavelength = int(which[m]), number, int(own.index is not None)
         row.roughness = w.wave.roughness
+        row.maps = mapped.number(own.layer)
         spread = 0.0
         if own.layer.distribution in REGULAR:
             spread = own.layer.depth * own.layer.depth_variation / math.sqrt(3.0)
@@ -225,6 +252,8 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
     arrays.spectral = floats(spectral, float)
     arrays.shares = floats(np.concatenate(shares), float)
     arrays.share_colors = floats(spectral_samples(BINS)[1], wp.vec3)
+    if key.glint_masks or key.glint_orientations:
+        arrays.maps = mapped.packed(scene, shape.arrays, device)
     if outlines:
         arrays.outlines = wp.array(np.concatenate(outlines), dtype=wp.vec4d, device=device)
     if wides:

@@ -9,6 +9,7 @@ in closed form, along it pieces of one scratch add up exactly.
 import warp as wp
 
 from ..optics.frames_device import Frame, frame_with_tangent
+from ..optics.hash_device import hash_combine, unit_float
 from ..reflectance.base_device import CONDUCTOR, DIELECTRIC, SCHLICK, Base
 from ..reflectance.diffraction.ellipse_device import EXACT, PAPER, ellipse_footprint, make_ellipse
 from ..scratches.segments_device import Plane, plane_of
@@ -17,7 +18,9 @@ from .glint_arrays_device import GlintArrays, Glints, Strand
 from .glint_bands_device import band_strand
 from .glint_energy_device import BINS, COLUMNS, balance_of, take_all, take_share
 from .glint_lights_device import make_strand_light
+from .glint_maps_device import mask_at, turned_band
 from .glint_pairs_device import MOST_MATES, paired
+from .glint_paths_device import diffracted_way, random_after
 from .glint_stretch_device import between
 from .key import KernelKey
 from .lobe_device import luminance
@@ -138,6 +141,8 @@ def make_glints(key: KernelKey, transmittance):
                     r.width = piece.width
                     r.depth = piece.depth
                     r.layer = piece.layer
+                    if wp.static(key.glint_masks):
+                        r.length *= mask_at(a, a.layers[piece.layer].maps, g, s, step_x, step_y)
                     if wp.static(key.glint_pairs):
                         r.at = -side * across
                         r.low = -half - along
@@ -175,6 +180,12 @@ def make_glints(key: KernelKey, transmittance):
         number = a.material[s.material]
         wave = a.waves[number]
         known = wp.zeros(shape=8, dtype=wp.vec4)
+        if wp.static(key.glint_paths):
+            # one of the strands, in proportion to what it covers
+            drawn = Strand()
+            drawn_area = float(0.0)
+            area_sum = float(0.0)
+            random = hash_combine(hash_combine(seed, index), wp.uint32(dimension))
         if wp.static(key.glint_segments):
             sigma = 1.0e-6 * wave.sigma
             reach = wp.vec3(0.0, 0.0, 0.0)
@@ -202,6 +213,12 @@ def make_glints(key: KernelKey, transmittance):
                                 if strand.length > 0.0:
                                     layer = a.layers[strand.layer]
                                     take_share(a, layer, strand, strand.length * strand.width, covered, taken)
+                                    if wp.static(key.glint_paths):
+                                        area_sum += strand.length * strand.width
+                                        random = random_after(random)
+                                        if unit_float(random) * area_sum < strand.length * strand.width:
+                                            drawn = strand
+                                            drawn_area = strand.length * strand.width
                                     alone = int(1)
                                     if wp.static(key.glint_pairs):
                                         if wave.coherent == 1 and met < wp.static(MOST_MATES):
@@ -238,6 +255,12 @@ def make_glints(key: KernelKey, transmittance):
                             if strand.length > 0.0:
                                 layer = a.layers[strand.layer]
                                 take_share(a, layer, strand, strand.length * strand.width, covered, taken)
+                                if wp.static(key.glint_paths):
+                                    area_sum += strand.length * strand.width
+                                    random = random_after(random)
+                                    if unit_float(random) * area_sum < strand.length * strand.width:
+                                        drawn = strand
+                                        drawn_area = strand.length * strand.width
                                 alone = int(1)
                                 if wp.static(key.glint_pairs):
                                     if wave.coherent == 1 and met < wp.static(MOST_MATES):
@@ -292,14 +315,26 @@ def make_glints(key: KernelKey, transmittance):
         if wp.static(key.glint_bands):
             for n in range(wave.first_band, wave.first_band + wave.bands):
                 band = a.bands[n]
+                if wp.static(key.glint_orientations):
+                    band = turned_band(a, band, g, s, frame, step_x, step_y, index)
                 strand = band_strand(band, g, s, frame.n, step_x, step_y, 1.0e-6 * wave.sigma)
                 if strand.length > 0.0:
                     layer = a.layers[strand.layer]
                     area = wp.min(strand.length * strand.width, 1.0)
                     if strand.pitch > 0.0:
                         # order 0 is the base's
-                        area *= 1.0 - area
+                        area *= wp.max(1.0 - area / band.share, 0.0)
+                    if wp.static(key.glint_masks):
+                        there = mask_at(a, band.maps, g, s, step_x, step_y)
+                        strand.length *= there
+                        area *= there
                     take_share(a, layer, strand, area, covered, taken)
+                    if wp.static(key.glint_paths):
+                        area_sum += area
+                        random = random_after(random)
+                        if unit_float(random) * area_sum < area:
+                            drawn = strand
+                            drawn_area = area
                     lit = strand_light(
                         a,
                         strand,
@@ -321,6 +356,15 @@ def make_glints(key: KernelKey, transmittance):
         balance = balance_of(a, covered, taken)
         r.left = balance.left
         r.radiance = wp.cw_mul(total, balance.shared)
+        if wp.static(key.glint_paths):
+            if drawn_area > 0.0:
+                # of a grating what its orders hold, spread as by single lines
+                drawn.length = drawn_area / wp.max(drawn.width, 1.0e-6)
+                way = diffracted_way(a, drawn, wo, random)
+                if wp.dot(way.direction, s.ng) > 0.0:
+                    r.way = way.direction
+                    carried = wp.cw_mul(way.weight, balance.shared) * (area_sum / drawn_area)
+                    r.carried = carried
         return r
 
     return glints

@@ -29,6 +29,8 @@ class KernelKey:
         glint_footprint: gaussian, exact, paper or point.
         glint_lookup: colours under wide lights are looked up. glint_numeric: some cross-section is no
             rectangle, or some phase depends on angles. glint_pairs: scratches of a footprint interfere.
+            glint_paths: paths go on that they diffract. glint_masks, glint_orientations: maps say where they are and
+            which way regular ones run.
         grooves: some scratches are laid out one by one. groove_crossings: they cross, bend or end;
             groove_bounces: light goes on inside; groove_glass: some are cut in what refracts; groove_handover: far away
             they are as statistical as the others.
@@ -71,6 +73,9 @@ class KernelKey:
     glint_lookup: bool = False
     glint_numeric: bool = False
     glint_pairs: bool = False
+    glint_paths: bool = False
+    glint_masks: bool = False
+    glint_orientations: bool = False
     glint_method: str = "slices"
     glint_footprint: str = "gaussian"
     grooves: bool = False

@@ -68,7 +68,8 @@ def direction_row(scene: Scene, name: str, dpdu: Array, normals: Array) -> Array
     return np.concatenate([*parts, np.zeros((0, 2))]).astype(np.float32)
 
 
-def _normals(points: Array) -> Array:
+def normals_of(points: Array) -> Array:
+    """Unit normals [m, 3] of triangles given by their corners [3 m, 3]."""
     corners = points.reshape(-1, 3, 3).astype(np.float64)
     cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     return cross / np.maximum(np.linalg.norm(cross, axis=1), 1e-30)[:, None]
@@ -103,7 +104,13 @@ def pack_maps(
 ) -> MapSet:
     """Maps of ``mapped(layers)``. ``shape``: the scene's packed ``Geometry``; ``masks``,
     ``oriented``: which of the maps are on."""
-    every = mapped(layers) if masks or oriented else []
+    return pack_sublayers(scene, mapped(layers) if masks or oriented else [], shape, masks, oriented, device)
+
+
+def pack_sublayers(
+    scene: Scene, every: Sequence[Sublayer], shape: Any, masks: bool, oriented: bool, device: str = "cpu"
+) -> MapSet:
+    """The same of any sublayers, in their order."""
     images: dict[tuple[int, str], int] = {}
     rows: dict[str, list[str]] = {"mask": [], "orientation": []}
 
@@ -140,7 +147,7 @@ def pack_maps(
     packed.masks = wp.array(np.stack(values), dtype=float, device=device)
     directions = [np.zeros((1, 2), np.float32)]
     if rows["orientation"]:
-        dpdu, normals = shape.dpdu.numpy().astype(np.float64), _normals(shape.points.numpy())
+        dpdu, normals = shape.dpdu.numpy().astype(np.float64), normals_of(shape.points.numpy())
         directions = [direction_row(scene, name, dpdu, normals) for name in rows["orientation"]]
     packed.directions = wp.array(np.stack(directions), dtype=wp.vec2, device=device)
     return packed

@@ -23,6 +23,7 @@ from .geometry_device import (
     intersect,
     lifted,
 )
+from .glint_paths_device import way_taken
 from .glints_device import left_of_base, less_specular, make_glints
 from .grooves_device import make_grooves
 from .key import KernelKey
@@ -203,6 +204,9 @@ def make_kernel(key: KernelKey):
                         if depth < most or glass == 1:
                             p = lifted(g, s)
                             kept = wp.vec3(1.0, 1.0, 1.0)
+                            if wp.static(key.glint_paths):
+                                way = wp.vec3(0.0, 0.0, 0.0)
+                                carried = wp.vec3(0.0, 0.0, 0.0)
                             if wp.static(key.glints):
                                 if scratches.glints.material[s.material] >= 0:
                                     closeness = float(0.0)
@@ -227,6 +231,11 @@ def make_kernel(key: KernelKey):
                                     diffracted = wp.cw_mul(throughput, sparkle.radiance)
                                     if wp.static(key.opacity):
                                         diffracted = diffracted * ((1.0 - through) / wp.max(1.0 - passing, 1.0e-6))
+                                    if wp.static(key.glint_paths):
+                                        way = sparkle.way
+                                        carried = wp.cw_mul(throughput, sparkle.carried)
+                                        if wp.static(key.opacity):
+                                            carried = carried * ((1.0 - through) / wp.max(1.0 - passing, 1.0e-6))
                                     rays += int(sparkle.rays)
                                     kept = left_of_base(base, sparkle.left)
                                     base = less_specular(base, sparkle.left)
@@ -315,6 +324,15 @@ def make_kernel(key: KernelKey):
                             rays += int(received[3])
                             step = wp.cw_mul(throughput, out.weight)
                             lobe.diffuse_share = out.diffuse_share
+                            if wp.static(key.glint_paths):
+                                turn = way_taken(carried, step, out.alive, sobol_2d(index, pair + 3, seed)[1])
+                                step = turn[1] * step
+                                if turn[0] > 0.0:
+                                    lobe.scratch = 5
+                                    out.alive = 1
+                                    out.pdf = -1.0
+                                    out.direction = way
+                                    step = turn[1] * carried
                             if depth == 0:
                                 film.normal[line, column] = film.normal[line, column] + frame.n
                                 film.albedo[line, column] = film.albedo[line, column] + base_albedo(
@@ -354,6 +372,9 @@ def make_kernel(key: KernelKey):
                     part_scratch += part
                 else:
                     part_base += part
+                if wp.static(key.glint_paths):
+                    if entered == 0 and lobe.scratch == 5:
+                        first_scratch = 5  # what comes this way
 
             if wp.isfinite(color[0] + color[1] + color[2]):
                 film.color[line, column] = film.color[line, column] + color

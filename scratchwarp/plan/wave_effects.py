@@ -9,6 +9,9 @@ import numpy as np
 from ..scene import Layer, Scene, Settings
 from .waves import REGULAR, is_grating, looks_up
 
+# circles, spirals and curves go their own way
+TURNED = ("linear", "crosshatch", "random", "worley")
+
 Answer = tuple[bool, str, tuple[str, ...]]
 
 
@@ -89,6 +92,17 @@ def _pairs(f: Any) -> Answer:
     return _answer(found, "scratches under one footprint interfere", "no single scratches are to be summed coherently")
 
 
+def _masks(f: Any) -> Answer:
+    found = [x.label for x in _layers(f) if x.mask_texture >= 0 or x.mask_primvar]
+    return _answer(found, "masks say where these scratches are", "no layer that diffracts has a mask")
+
+
+def _orientation(f: Any) -> Answer:
+    layers = [x for x in _layers(f) if x.distribution in TURNED]
+    found = [x.label for x in layers if x.orientation_texture >= 0 or x.orientation_primvar]
+    return _answer(found, "maps turn these scratches", "no layer that diffracts has a map of directions")
+
+
 def _areas(f: Any) -> Answer:
     if not _layers(f):
         return False, "nothing diffracts", ()
@@ -105,7 +119,7 @@ def _lookup(f: Any) -> Answer:
 
 def _outlines(f: Any) -> Answer:
     waves = [own for own in f.waves if own is not None]
-    found = [p.layer.label for own in waves for p in own.layers if p.outline is not None]
+    found = [p.layer.label for own in waves for p in own.layers if any(x is not None for x in p.outlines)]
     return _answer(found, "cross-sections other than rectangles, integrated numerically", "every one is a rectangle")
 
 
@@ -127,6 +141,8 @@ WAVE_EFFECTS: dict[str, Callable[[Any], Answer]] = {
     "diffraction.bands": _bands,
     "diffraction.coherent": _coherent,
     "diffraction.pairs": _pairs,
+    "diffraction.masks": _masks,
+    "diffraction.orientation": _orientation,
     "diffraction.areaLights": _areas,
     "diffraction.lookup": _lookup,
     "diffraction.outlines": _outlines,

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from .. import optics
+from .. import optics, profiles
 from ..optics import metals
 from ..reflectance.diffraction.outline import facets
 from ..scene import Layer, Material, Scene, ScratchSurface, Wave
@@ -25,12 +25,18 @@ REGULAR = ("linear", "concentric", "spiral", "crosshatch")
 class WaveLayerPlan:
     """A layer that diffracts; ``fresnel``: an ``optics`` reflector; ``index``: wavelength [nm] -> (n, k), or None where
     its reflectance is known for R, G and B alone; ``outline``: rows of ``diffraction``'s facets ``[n, 4]``, None for a
-    rectangle."""
+    rectangle; ``others``: further ones, of as many of its scratches each, where cross-sections vary."""
 
     layer: Layer
     fresnel: Any
     index: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]] | None
     outline: np.ndarray | None = None
+    others: tuple[np.ndarray | None, ...] = ()
+
+    @property
+    def outlines(self) -> tuple[np.ndarray | None, ...]:
+        """All cross-sections."""
+        return (self.outline, *self.others)
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,6 +108,25 @@ def outline(layer: Layer) -> np.ndarray | None:
     return rows if len(rows) else np.zeros((1, 4))
 
 
+def outlines(layer: Layer) -> tuple[np.ndarray | None, ...]:
+    """The cross-sections of a layer's scratches: one, or four on the way to its other profile.
+
+    Raises ValueError on a profile that cannot be drawn, or none between two of them.
+    """
+    end, amount = layer.profile_end, layer.profile_variation
+    if end is None or amount <= 0.0:
+        return (outline(layer),)
+    made = []
+    for part in (0.125, 0.375, 0.625, 0.875):
+        try:
+            between = profiles.between(cross_section(layer.profile, layer), cross_section(end, layer), amount * part)
+        except ValueError as error:
+            raise ValueError(f"{layer.label}: on the way to profileEnd {end.path}: {error}") from None
+        rows = facets(between)
+        made.append(rows if len(rows) else np.zeros((1, 4)))
+    return tuple(made)
+
+
 def plan_waves(
     scene: Scene,
     wanted: Callable[[Material, Layer], bool],
@@ -123,7 +148,8 @@ def plan_waves(
             if wanted(material, layer) and layer.width > 0.0:
                 fresnel = reflector(scene, material, layer)[0]
                 if fresnel is not None:
-                    own.append(WaveLayerPlan(layer, fresnel, wave_index(material, layer), outline(layer)))
+                    first, *others = outlines(layer)
+                    own.append(WaveLayerPlan(layer, fresnel, wave_index(material, layer), first, tuple(others)))
         wave = material.wave
         made.append(WavePlan(turned_wave(wave, knobs), tuple(own)) if own and wave is not None else None)
     return tuple(made)
@@ -141,12 +167,8 @@ def complaints(waves: tuple[WavePlan | None, ...]) -> tuple[str, ...]:
                     f"{layer.label}: regular patterns are summed coherently where they are closer than "
                     "coherenceRadius; the light of these scratches adds up"
                 )
-            if layer.mask_texture >= 0 or layer.mask_primvar:
-                said.append(f"{layer.label}: masks are not honoured where scratches diffract")
-            if layer.orientation_texture >= 0 or layer.orientation_primvar:
-                said.append(f"{layer.label}: orientations are not honoured where scratches diffract")
-            if layer.profile_variation > 0.0 or layer.variation_length > 0.0:
-                said.append(f"{layer.label}: scratches that diffract are alike all along and of one cross-section")
+            if layer.profile_variation > 0.0 and layer.variation_length > 0.0:
+                said.append(f"{layer.label}: the cross-section of a scratch that diffracts is the same all along it")
             if layer.model == "auto" and layer.distribution == "worley":
                 said.append(f"{layer.label}: worley scratches that diffract are laid out one by one, as random ones")
     return tuple(dict.fromkeys(said))

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from ..scene import Curves, Layer
+from .along import Field, followed, varied
 
 # More than this many would not fit into memory together with their pieces.
 MOST = 5_000_000
@@ -14,14 +15,21 @@ _POINTS_A_RADIAN = 8.0
 
 
 def random_scratches(
-    layer: Layer, low: tuple[float, float], high: tuple[float, float], scale: tuple[float, float]
+    layer: Layer,
+    low: tuple[float, float],
+    high: tuple[float, float],
+    scale: tuple[float, float],
+    field: Field | None = None,
+    varying: bool = False,
 ) -> Curves:
     """Scratches of one layer over the rectangle of uv from ``low`` to ``high``.
 
     ``scale``: units of the layer's lengths a unit of u and of v (1, 1 in space uv; micrometres in space surface).
     As many as ``density`` or ``coverage`` (1 - e^-(number times area)) call for; their middles are spread evenly at
     random, their angles over ``angle_spread`` (all where distribution random has none), their widths and depths over
-    the layer's variations. Raises ValueError where that would be more than ``MOST``, or more
+    the layer's variations, ``varying``: also along each as far as ``variation_length`` says. ``field``: uv ``[n, 2]``
+    -> unit vectors of twice the direction that scratches follow from there, zeros for none; the layer's angle and its
+    spread turn them further. Raises ValueError where that would be more than ``MOST``, or more
     than ``MOST_CORNERS`` corners.
     """
     size = np.array([(high[0] - low[0]) * scale[0], (high[1] - low[1]) * scale[1]])
@@ -48,7 +56,7 @@ def random_scratches(
     n = int(rng.poisson(number)) if number < 1e6 else round(number)
     middle = -margin + rng.random((n, 2)) * (size + 2.0 * margin)
     spread = layer.angle_spread
-    if layer.distribution == "random" and spread == 0.0:
+    if layer.distribution == "random" and spread == 0.0 and field is None:
         spread = math.pi
     angle = layer.angle + spread * (rng.random(n) - 0.5)
     turn = layer.curvature
@@ -60,13 +68,20 @@ def random_scratches(
     cosine, sine = np.cos(angle)[:, None], np.sin(angle)[:, None]
     x = middle[:, :1] + cosine * along - sine * across
     y = middle[:, 1:] + sine * along + cosine * across
+    if field is not None:
+        traced = followed(middle, angle, angle, length, np.array(low), np.array(scale), field)
+        x, y, points = traced[..., 0], traced[..., 1], traced.shape[1]
     uv = np.stack([low[0] + x / scale[0], low[1] + y / scale[1], np.zeros_like(x)], -1).reshape(-1, 3)
 
+    varying = varying and layer.variation_length > 0.0
+
     def sizes(mean: float, variation: float) -> Any:
+        if varying:
+            return np.full(n * points, mean)
         return np.repeat(mean * (1.0 + variation * (2.0 * rng.random(n) - 1.0)), points)
 
     unit = "uv" if layer.space == "uv" else "um"
-    return Curves(
+    made = Curves(
         path=layer.label,
         points=uv,
         counts=np.full(n, points, np.int32),
@@ -76,3 +91,4 @@ def random_scratches(
         width_unit=unit,
         depth_unit=unit,
     )
+    return varied(made, layer, np.array([*scale, 1.0]), True) if varying else made

@@ -7,6 +7,7 @@ import pytest
 
 import scratchwarp as sw
 from scratchwarp import diffraction
+from scratchwarp.kernels import kernel_key
 from scratchwarp.reflectance.diffraction.color import spectral_samples
 from scratchwarp.scene import (
     Camera,
@@ -34,7 +35,8 @@ LENGTH = 0.004
 # one kernel for all tests: its code does not depend on which of these lights are there
 LIGHTS = {f"lights.{name}": True for name in ("distant", "sphere", "rect", "disk", "cylinder", "mesh", "dome")}
 COMPILED = {**LIGHTS, "shadows": True}
-WAVES = ("lists", "hierarchy", "areaLights", "segments", "bands", "coherent", "lookup", "outlines", "angles", "pairs")
+WAVES = ("lists", "hierarchy", "areaLights", "segments", "bands", "coherent", "lookup", "outlines", "angles")
+WAVES += ("pairs", "masks", "orientation")
 COMPILED |= {f"diffraction.{name}": True for name in WAVES}
 
 
@@ -239,6 +241,8 @@ def test_nothing_is_built_without_the_schema():
     plan = sw.make_plan(world, sw.Settings(width=4, height=4))
     assert not any(choice.enabled for name, choice in plan.effects.items() if name.startswith("diffraction"))
     assert "no material has ScratchWaveAPI" in plan.explain()
+    key = vars(kernel_key(world, plan))
+    assert not [name for name, value in key.items() if name.startswith("glint") and value is True]
 
 
 def test_directions_build_no_area_light_code():
@@ -246,6 +250,8 @@ def test_directions_build_no_area_light_code():
     world = scenes.scene([scenes.plane(0.02)], [waves()], [light], curves=(stroke(0.1),))
     plan = sw.make_plan(world, sw.Settings(width=4, height=4))
     assert plan.on("diffraction.segments") and not plan.on("diffraction.areaLights")
+    key = kernel_key(world, plan)
+    assert key.glints and not key.glint_areas and not key.glint_lookup
     assert not any(p for own in plan.layers for p in own) and not plan.tables
     assert plan.effects["diffraction.areaLights"].reason == "every light is a point or a direction"
     dome = replace(world, lights=(DomeLight(path="/d", radiance=np.ones(3)),))

@@ -20,11 +20,12 @@ KNOBS = (
     ),
     Knob(
         name="diffraction.footprint",
-        values=("paper", "gaussian", "exact"),
+        values=("point", "paper", "gaussian", "exact"),
         default="gaussian",
         error="scratches near the rim of what a sample stands for are weighed as by another shape",
         effects=("diffraction.segments",),
         switches={
+            "point": {"diffraction.pointFootprint": True},
             "paper": {"diffraction.paperFootprint": True},
             "gaussian": {},
             "exact": {"diffraction.exactFootprint": True},
