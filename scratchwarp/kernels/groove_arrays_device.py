@@ -62,18 +62,19 @@ class GrooveArrays:
 class GrooveSpot:
     """A footprint on a pattern.
 
-    ``frame``: of the surface, in the world; ``turn``, ``mirror``: its x and y in the pattern, y mirrored where mirror
-    is -1; ``o``: towards the viewer, in the pattern; ``near``: 1 where grooves are to be laid out; ``smooth``:
-    roughness of facets, 0 for that of the surface; ``inside`` 1: the viewer looks from within the glass, and the frame
-    is still that of the air's side; ``scale``: of the pattern's record, 0 where there is none.
+    ``frame``: of the surface, in the world; ``there``: from its x and y to the pattern's, a turn but where the mapping
+    stretches or shears; ``back``: its inverse; ``o``: towards the viewer, in the pattern; ``near``: 1 where grooves are
+    to be laid out; ``smooth``: roughness of facets, 0 for that of the surface; ``inside`` 1: the viewer looks from
+    within the glass, and the frame is still that of the air's side; ``scale``: of the pattern's record, 0 where there
+    is none.
     """
 
     grooves: GrooveSet
     grid: Grid
     footprint: Footprint
     frame: Frame
-    turn: wp.vec2d
-    mirror: wp.float64
+    there: wp.mat22d
+    back: wp.mat22d
     o: wp.vec3d
     near: int
     smooth: float
@@ -84,14 +85,16 @@ class GrooveSpot:
 @wp.struct
 class FacetStuff:
     """What facets under a footprint are made of: the surface's ``base``, scaled lobes, x axis of its anisotropy in the
-    pattern; ``own`` and ``bases`` as in ``GrooveArrays``, ``smooth`` as in ``GrooveSpot``; ``clear``: how much of what
-    is not reflected goes through."""
+    surface's frame; ``there``, ``back``, ``smooth`` as in ``GrooveSpot``, ``own`` and ``bases`` as in ``GrooveArrays``;
+    ``clear``: how much of what is not reflected goes through."""
 
     base: Base
     w_diffuse: float
     w_specular: float
     smooth: float
     x: wp.vec3
+    there: wp.mat22d
+    back: wp.mat22d
     own: wp.array(dtype=int)
     bases: wp.array(dtype=Base)
     clear: float

@@ -2,7 +2,7 @@
 
 import warp as wp
 
-from ..optics.frames_device import Frame, frame_with_tangent, to_local
+from ..optics.frames_device import Frame, frame_with_tangent, to_local, to_world
 from ..optics.sobol_device import sobol_2d
 from ..reflectance.base_device import Base, base_eval, base_eval_pdf
 from ..reflectance.grooves.follow_device import follow
@@ -22,14 +22,35 @@ GRAZING = wp.constant(wp.float64(1e-9))
 
 
 @wp.func
+def mapped(m: wp.mat22d, d: wp.vec3d) -> wp.vec3d:
+    """A direction whose x and y are multiplied with ``m``, unit."""
+    xy = m * wp.vec2d(d[0], d[1])
+    return wp.normalize(wp.vec3d(xy[0], xy[1], d[2]))
+
+
+@wp.func
+def rounded(d: wp.vec3d) -> wp.vec3:
+    """In float32."""
+    return wp.vec3(float(d[0]), float(d[1]), float(d[2]))
+
+
+@wp.func
 def in_pattern(spot: GrooveSpot, w: wp.vec3) -> wp.vec3d:
-    """A world direction in the pattern."""
-    local = to_local(spot.frame, w)
-    x = wp.float64(local[0])
-    y = spot.mirror * wp.float64(local[1])
-    return wp.normalize(
-        wp.vec3d(spot.turn[0] * x - spot.turn[1] * y, spot.turn[1] * x + spot.turn[0] * y, wp.float64(local[2]))
-    )
+    """A world direction in the pattern, where it may run at other angles to others."""
+    d = to_local(spot.frame, w)
+    return mapped(spot.there, wp.vec3d(wp.float64(d[0]), wp.float64(d[1]), wp.float64(d[2])))
+
+
+@wp.func
+def out_of_pattern(spot: GrooveSpot, d: wp.vec3d) -> wp.vec3:
+    """A direction in the pattern in the world."""
+    return to_world(spot.frame, rounded(mapped(spot.back, d)))
+
+
+@wp.func
+def normal_of(spot: GrooveSpot, n: wp.vec3d) -> wp.vec3:
+    """A facet's normal in the pattern in the world, where it is that of the stretched facet."""
+    return to_world(spot.frame, rounded(mapped(wp.transpose(spot.there), n)))
 
 
 @wp.func
@@ -52,9 +73,9 @@ def facet_base(stuff: FacetStuff, path: int) -> Base:
 @wp.func
 def stuff_radiance(stuff: FacetStuff, path: int, n: wp.vec3d, o: wp.vec3d, i: wp.vec3d) -> wp.vec3d:
     """Radiance of a facet towards ``o`` under unit perpendicular irradiance from ``i``."""
-    frame = frame_with_tangent(wp.vec3(float(n[0]), float(n[1]), float(n[2])), stuff.x)
-    wo = to_local(frame, wp.vec3(float(o[0]), float(o[1]), float(o[2])))
-    wi = to_local(frame, wp.vec3(float(i[0]), float(i[1]), float(i[2])))
+    frame = frame_with_tangent(rounded(mapped(wp.transpose(stuff.there), n)), stuff.x)
+    wo = to_local(frame, rounded(mapped(stuff.back, o)))
+    wi = to_local(frame, rounded(mapped(stuff.back, i)))
     value = base_eval(facet_base(stuff, path), wo, wi, stuff.w_diffuse, stuff.w_specular)
     return wp.vec3d(wp.float64(value[0]), wp.float64(value[1]), wp.float64(value[2]))
 

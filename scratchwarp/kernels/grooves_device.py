@@ -21,7 +21,7 @@ from .bounce_device import Scatter
 from .geometry_device import Geometry, Surface, uv_motion
 from .groove_arrays_device import GROOVE_ROOM, FacetStuff, GrooveArrays, GrooveSpot
 from .groove_glass_device import chance_through, from_within, glass_base, refracted
-from .groove_light_device import GRAZING, facet_base, in_pattern, make_facet_lit
+from .groove_light_device import GRAZING, facet_base, in_pattern, make_facet_lit, normal_of, out_of_pattern
 from .key import KernelKey
 from .lobe_device import Lobe, largest, mirrored_at
 from .material_device import MaterialArrays
@@ -43,14 +43,6 @@ class GrooveLight:
     out: Scatter
     inside: int
     aside: wp.vec3
-
-
-@wp.func
-def out_of_pattern(spot: GrooveSpot, d: wp.vec3d) -> wp.vec3:
-    """A direction in the pattern in the world."""
-    x = spot.turn[0] * d[0] + spot.turn[1] * d[1]
-    y = spot.mirror * (spot.turn[0] * d[1] - spot.turn[1] * d[0])
-    return wp.normalize(to_world(spot.frame, wp.vec3(float(x), float(y), float(d[2]))))
 
 
 @wp.func
@@ -109,21 +101,18 @@ def make_grooves(key: KernelKey, transmittance):
             sy = record.scale[1]
             spot.scale = record.scale
             spot.frame = frame_with_tangent(outward, g.dpdu[s.face])
-            # the rotation (and mirror image) nearest to the mapping
-            mx = uv_motion(g, s, spot.frame.x)
-            my = uv_motion(g, s, spot.frame.y)
-            m00 = wp.float64(mx[0]) * sx
-            m10 = wp.float64(mx[1]) * sy
-            m01 = wp.float64(my[0]) * sx
-            m11 = wp.float64(my[1]) * sy
-            spot.mirror = wp.float64(1.0)
-            if m00 * m11 - m01 * m10 < wp.float64(0.0):
-                spot.mirror = wp.float64(-1.0)
-            turn = wp.vec2d(m00 + spot.mirror * m11, m10 - spot.mirror * m01)
-            size = wp.length(turn)
-            spot.turn = wp.vec2d(wp.float64(1.0), wp.float64(0.0))
-            if size > wp.float64(0.0):
-                spot.turn = turn / size
+            flat = frame_with_tangent(wp.where(spot.inside == 1, -1.0, 1.0) * s.ng, g.dpdu[s.face])
+            mx = uv_motion(g, s, flat.x)
+            my = uv_motion(g, s, flat.y)
+            # micrometres for a metre
+            there = wp.float64(1.0e-6) * wp.mat22d(
+                wp.float64(mx[0]) * sx, wp.float64(my[0]) * sx, wp.float64(mx[1]) * sy, wp.float64(my[1]) * sy
+            )
+            spot.there = wp.identity(n=2, dtype=wp.float64)
+            spot.back = spot.there
+            if wp.abs(wp.determinant(there)) > wp.float64(1.0e-9) * wp.ddot(there, there):
+                spot.there = there
+                spot.back = wp.inverse(there)
             spot.o = in_pattern(spot, wo)
             ax = uv_motion(g, s, step_x)
             ay = uv_motion(g, s, step_y)
@@ -143,8 +132,8 @@ def make_grooves(key: KernelKey, transmittance):
                 spot.near = 1
                 if number < 0:
                     spot.frame = frame_with_tangent(outward, frame.x)
-                    spot.mirror = wp.float64(1.0)
-                    spot.turn = wp.vec2d(wp.float64(1.0), wp.float64(0.0))
+                    spot.there = wp.identity(n=2, dtype=wp.float64)
+                    spot.back = spot.there
                     spot.grooves.skin = wp.float64(1.0e-6)
                     spot.grid.cell = wp.float64(1.0)
                     spot.o = in_pattern(spot, wo)
@@ -184,8 +173,9 @@ def make_grooves(key: KernelKey, transmittance):
         stuff.base = lobe.base
         stuff.w_diffuse = lobe.w_diffuse
         stuff.w_specular = lobe.w_specular
-        x = in_pattern(spot, lobe.frame.x)
-        stuff.x = wp.vec3(float(x[0]), float(x[1]), float(x[2]))
+        stuff.x = to_local(spot.frame, lobe.frame.x)
+        stuff.there = spot.there
+        stuff.back = spot.back
         stuff.own = data.own
         stuff.smooth = spot.smooth
         stuff.bases = data.bases
@@ -229,7 +219,7 @@ def make_grooves(key: KernelKey, transmittance):
                     if inside == 1:
                         n = -n
                         base = from_within(base)
-                frame = frame_with_tangent(out_of_pattern(spot, n), lobe.frame.x)
+                frame = frame_with_tangent(normal_of(spot, n), lobe.frame.x)
                 own_wo = to_local(frame, out_of_pattern(spot, -d))
                 if wp.static(key.groove_glass):
                     if stuff.clear > 0.0 and base.fresnel == DIELECTRIC:

@@ -107,10 +107,12 @@ def ours(crossing, surface, sun, sky, pixels, spp, effects=None, **fields):
     return sw.render(scene, sw.make_plan(scene, settings(pixels, spp, effects)))
 
 
-def twin(crossing, surface, sun, sky, pixels, spp):
-    """The film by us of the true sheet: its triangles, path traced."""
+def twin(crossing, surface, sun, sky, pixels, spp, stretch=None):
+    """The film by us of the true sheet: its triangles, path traced, x and y multiplied with ``stretch``."""
     scene = world(crossing, surface, sun, sky)
     points, faces = triangles(crossing)
+    if stretch is not None:
+        points[:, :2] = points[:, :2] @ stretch.T
     bare = replace(scene.materials[0], layers=())
     scene = replace(scene, meshes=(Mesh("/true", points * (2e-4 / PERIOD), faces),), materials=(bare,))
     asked = settings(pixels, spp, {"lights.dome": True, "lights.distant": True})

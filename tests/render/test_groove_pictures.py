@@ -48,6 +48,20 @@ def test_light_between_facets_is_that_between_triangles(crossing, surface):
         assert made == pytest.approx(true, rel=3e-3)
 
 
+@pytest.mark.parametrize("crossing", [False, True], ids=["parallel", "crossing"])
+def test_a_stretched_mapping_stretches_grooves(crossing):
+    """A mapping whose u and v are 53 degrees apart: the triangles, sheared like that and no less deep."""
+    shear = np.array([[1.0, 0.6], [0.0, 0.8]])
+    for sun, sky in ((1.0, 0.0), (0.0, 0.5)):
+        world = sheets.world(crossing, GLOSSY, sun, sky)
+        (mesh,) = world.meshes
+        points = np.concatenate([mesh.points[:, :2] @ shear.T, mesh.points[:, 2:]], 1)
+        world = replace(world, meshes=(replace(mesh, points=points),))
+        made = sw.render(world, sw.make_plan(world, sheets.settings(8, 4096, EFFECTS)))["color"].mean(dtype=float)
+        true = sheets.twin(crossing, GLOSSY, sun, sky, 8, 8192, shear)["color"].mean(dtype=float)
+        assert made == pytest.approx(true, rel=4e-3)
+
+
 def picture(world, spp=16):
     """Finite, or a failed assertion."""
     film = sw.render(world, sw.make_plan(world, sheets.settings(16, spp, EFFECTS)))
