@@ -18,7 +18,7 @@ Files:
                               them on a stage
     deformed_highlights       draws anisotropic highlights on normal maps, plain and with facets that follow
     measured_material         fits highlight stencils to a measured BRDF and writes them as a Material
-    profile_from_topography   takes a cross-section out of a height map
+    topography                makes a preset of a height map; profile_from_topography takes the cross-section out of it
     scratch_map               makes a seamless normal map of scratches, and (scratch_plate) a stage that shows
                               it
 """

@@ -153,6 +153,10 @@ def lay_out(
     kept = sum((x.share for x in layers if x.plan.keeps_diffuse), np.zeros((height, width), np.float32))
     texel = (1e6 * float(extent[0]) / width, 1e6 * float(extent[1]) / height)
     base = _base(scene, found, window, (width, height), notes)
+    if found.uses_display_color:
+        base["color"] = np.full(3, 0.18) if mesh.colors is None else np.asarray(mesh.colors, float).mean((0, 1))
+        if mesh.colors is not None and np.ptp(mesh.colors.reshape(-1, 3), axis=0).max() > 1e-3:
+            notes.append(f"{found.path}: the display colour of {placed.path} counts with its mean")
     return Look(
         material, found.path, window, mapped, texel, scale, bare.astype(np.float32), kept, layers, base, tuple(notes)
     )
@@ -259,8 +263,6 @@ def _base(
     def at(value: Any, low: float = 0.0, high: float = 1.0) -> Array:
         return np.clip(sample(scene, value, window, size), low, high)
 
-    if material.uses_display_color:
-        notes.append(f"{material.path}: the display colour of meshes is left out; its base is grey")
     normal = None
     if s.normal is not None:
         n = sample(scene, s.normal, window, size)

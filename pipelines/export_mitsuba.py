@@ -17,7 +17,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from scratchwarp.scene import Scene
+from scratchwarp.scene import DomeLight, Scene
 
 from .baked_look import Look, Nearest, lay_out
 from .mitsuba_lights import Node, Vector, emitters
@@ -91,10 +91,11 @@ def write_scene(
                 shape["emitter"] = ("emitter area", {"radiance": glow})
             nodes.append(("shape ply", shape))
     nodes += emitters(scene, folder, notes)
+    hidden = any(isinstance(light, DomeLight) and not light.camera_visible for light in scene.lights)
+    how = {"hide_emitters": hidden}
+    path = ("integrator path", {"max_depth": depth + 1, "rr_depth": 1000, **how})
     document = {
-        "integrator": ("integrator direct", {})
-        if depth == 1
-        else ("integrator path", {"max_depth": depth + 1, "rr_depth": 1000}),
+        "integrator": ("integrator direct", how) if depth == 1 else path,
         "sensor": camera(scene, plan, notes),
     }
     (folder / "scene.xml").write_text(xml([*document.values(), *nodes]), encoding="utf-8")

@@ -1,20 +1,17 @@
-"""Turn a measured height map of a scratched or ground surface into a cross-section to simulate: a ScratchProfile or a
-list of points.
+"""Take a cross-section out of a measured height map of a scratched or ground surface.
 
 The map is levelled (its best plane or paraboloid removed), its waviness filtered out, the direction of its grooves
 found (that of the straight line along which the mean height stands out most), averaged along it, and the groove that
 stands out most cut out between its shoulders; or the whole mean profile is kept as one period.
 """
 
-import argparse
-import sys
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 _COARSE = np.radians(np.arange(0.0, 180.0, 1.5))
+IMAGES = (".png", ".tif", ".tiff", ".exr", ".jpg", ".jpeg", ".hdr")
 # A groove reaches out to where this share of its depth is regained, and its rims this share of that distance further.
 _REGAINED = 0.7
 _RIM = 0.75
@@ -55,11 +52,18 @@ class Section:
         return np.stack(((self.x - self.x[0]) / self.width, self.z / self.depth), axis=1)
 
 
-def load(path: Path | str, pitch: float | None = None) -> Topography:
+def load(path: Path | str, pitch: float | None = None, height: float | None = None) -> Topography:
     """A height map from NPZ (arrays height_m, dx_m, dy_m, in metres), NPY or delimited text (micrometres; ``pitch``
-    [um] between samples is then needed). Raises ValueError on anything else, OSError where the file cannot be
-    read."""
+    [um] between samples is then needed), or an image (its red channel, ``height`` [um] from black to white). Raises
+    ValueError on anything else, OSError where the file cannot be read."""
     path = Path(path)
+    if path.suffix.lower() in IMAGES:
+        from scratchwarp.image import read_texture
+
+        if pitch is None or height is None:
+            needed = "pitch (micrometres between pixels)" if pitch is None else "height (micrometres to white)"
+            raise ValueError(f"{path}: {needed} is needed for an image; pass --{needed.split()[0]}")
+        return _checked(path, height * read_texture(str(path), "raw")[..., 0].astype(float), pitch, pitch)
     if path.suffix == ".npz":
         with np.load(path, allow_pickle=False) as held:
             missing = {"height_m", "dx_m", "dy_m"} - set(held.files)
@@ -246,88 +250,10 @@ def thinned(found: Section, tolerance: float) -> Section:
     return Section(found.x[keep], found.z[keep], found.direction, found.periodic)
 
 
-def write(found: Section, path: Path | str, source: str = "") -> Path:
-    """The section as a USD layer (a Material with a ScratchProfile and a layer of its width and depth), or, for .csv,
-    as points in micrometres. Raises ValueError on another suffix, OSError where it cannot be written."""
-    path = Path(path)
-    if path.suffix == ".csv":
-        np.savetxt(path, np.stack((found.x - found.x[0], found.z), axis=1), delimiter=",", fmt="%.6g")
-        return path
-    if path.suffix not in (".usda", ".usdc", ".usd"):
-        raise ValueError(f"{path}: expected .usda, .usdc, .usd or .csv")
-    from pxr import Gf, Sdf, Usd, UsdShade, Vt
+def write_points(found: Section, path: Path | str) -> None:
+    """The section as points (x, z) in micrometres, one a line with a comma between; OSError where it cannot be
+    written."""
+    from scratchwarp.whole import whole
 
-    from scratchwarp import usd_schemas
-
-    usd_schemas.register()
-    stage = Usd.Stage.CreateInMemory()
-    material = UsdShade.Material.Define(stage, "/Measured")
-    stage.SetDefaultPrim(material.GetPrim())
-    profile = stage.DefinePrim("/Measured/profile", "ScratchProfile")
-    profile.GetAttribute("scratch:shape").Set("points")
-    points = Vt.Vec2fArray([Gf.Vec2f(float(x), float(z)) for x, z in found.points])
-    profile.GetAttribute("scratch:points").Set(points)
-    profile.GetAttribute("scratch:periodic").Set(found.periodic)
-    prim = material.GetPrim()
-    prim.ApplyAPI("ScratchLayerAPI", "measured")
-    prim.GetAttribute("scratch:layer:measured:width").Set(found.width)
-    prim.GetAttribute("scratch:layer:measured:depth").Set(found.depth)
-    prim.GetRelationship("scratch:layer:measured:profile").SetTargets([profile.GetPath()])
-    surface = UsdShade.Shader.Define(stage, "/Measured/surface")
-    surface.CreateIdAttr("UsdPreviewSurface")
-    surface.CreateInput("metallic", Sdf.ValueTypeNames.Float).Set(1.0)
-    surface.CreateInput("roughness", Sdf.ValueTypeNames.Float).Set(0.1)
-    material.CreateSurfaceOutput().ConnectToSource(surface.ConnectableAPI(), "surface")
-    stage.GetRootLayer().comment = f"Cross-section {found.width:.4g} um wide, {found.depth:.4g} um deep. From {source}."
-    if not stage.GetRootLayer().Export(str(path)):
-        raise OSError(f"{path}: cannot be written")
-    return path
-
-
-def main(argv: Sequence[str] | None = None) -> int:
-    """Command line of this script."""
-    parser = argparse.ArgumentParser(
-        prog="python -m scratchwarp.pipelines.profile_from_topography",
-        description=(__doc__ or "").strip(),
-        epilog="example: python -m scratchwarp.pipelines.profile_from_topography ground.npz ground.usda",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    parser.add_argument(
-        "source", type=Path, help="height map: .npz with height_m, dx_m, dy_m; .npy, .csv or text in micrometres"
-    )
-    parser.add_argument("out", type=Path, help=".usda, .usdc, .usd or .csv")
-    parser.add_argument("--pitch", type=float, help="micrometres between samples, for .npy, .csv and text")
-    parser.add_argument(
-        "--direction", type=float, help="of the grooves, degrees from the map's x axis; found when not given"
-    )
-    parser.add_argument("--whole", action="store_true", help="keep the whole mean profile as one period")
-    parser.add_argument(
-        "--smooth", type=float, default=0.0, help="standard deviation of a Gaussian over the profile [um]"
-    )
-    parser.add_argument("--tolerance", type=float, default=0.0, help="height that points may be left out for [um]")
-    parser.add_argument(
-        "--waviness", type=float, default=80.0, help="wavelengths above this are removed [um]; 0 keeps them"
-    )
-    parser.add_argument("--degree", type=int, default=2, choices=(0, 1, 2, 3), help="of the polynomial removed")
-    options = parser.parse_args(argv)
-    try:
-        topography = levelled(load(options.source, options.pitch), options.degree)
-        if options.waviness > 0.0:
-            topography = without_waviness(topography, options.waviness)
-        direction = None if options.direction is None else float(np.radians(options.direction))
-        found = section(topography, direction, options.whole, options.smooth)
-        if options.tolerance > 0.0:
-            found = thinned(found, options.tolerance)
-        path = write(found, options.out, options.source.name)
-    except (ValueError, OSError) as error:
-        print(f"profile_from_topography: {error}", file=sys.stderr)
-        return 1
-    print(
-        f"{path}: {len(found.x)} points, {found.width:.4g} um wide, {found.depth:.4g} um deep, "
-        f"grooves at {np.degrees(found.direction):.2f} degrees"
-    )
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    with whole(Path(path)) as draft:
+        np.savetxt(draft, np.stack((found.x - found.x[0], found.z), axis=1), delimiter=",", fmt="%.6g")

@@ -12,6 +12,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("stage", metavar="FILE", help="USD file")
     parser.add_argument("--strict", "-t", action="store_true", help="warnings count as errors")
     parser.add_argument("--skipVariants", "-s", action="store_true", help="only the variants that are chosen")
+    parser.add_argument("--against", metavar="ASSET", help="leave out what this stage is found fault with, too")
     parser.add_argument("--fix", metavar="OUT", help="a copy beside FILE, mended where no guess is needed")
 
 
@@ -25,6 +26,13 @@ def run(options: argparse.Namespace) -> Report:
     if options.fix:
         mended, stage = fixed_copy(stage, options.fix), options.fix
     findings, count = (validate(stage), 1) if options.skipVariants else validate_variants(stage)
+    left_out = 0
+    if options.against:
+        known = {(f.rule, f.message) for f in validate(options.against)}
+        if not options.skipVariants:
+            known |= {(f.rule, f.message) for f in validate_variants(options.against)[0]}
+        kept = [f for f in findings if (f.rule, f.message) not in known]
+        left_out, findings = len(findings) - len(kept), kept
     rows = [
         {"severity": f.severity, "rule": f.rule, "prim": f.path, "message": f.message}
         | ({"variants": f.variants} if f.variants else {})
@@ -34,6 +42,8 @@ def run(options: argparse.Namespace) -> Report:
     if not findings:
         combined = f" in {count} combinations of variants" if count > 1 else ""
         lines.append(f"{stage}: nothing to find fault with{combined}")
+    if left_out:
+        lines.append(f"{left_out} findings of {options.against} are left out")
     counted = ("error", "warning") if options.strict else ("error",)
     failed = any(f.severity in counted for f in findings)
     record = {"fixed": mended, "findings": rows} if options.fix else rows
@@ -46,6 +56,7 @@ COMMAND = Command(
     examples=(
         "scratchwarp validate ball.usda",
         "scratchwarp validate ball.usda --strict --json",
+        "scratchwarp validate worn.usda --against cup.usda",
         "scratchwarp validate ball.usda --fix ball_fixed.usda",
     ),
     add_arguments=add_arguments,

@@ -1,11 +1,13 @@
 """Cross-sections out of height maps: made ones with a known answer, and measured ones."""
 
+import json
 import os
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from scratchwarp.pipelines import looks, topography
 from scratchwarp.pipelines import profile_from_topography as pipeline
 
 SHARED = Path(os.environ.get("SCRATCHWARP_SHARED", Path(__file__).parents[2].parent / "shared")) / "data/topography"
@@ -53,20 +55,48 @@ def test_whole_profile_and_thinning():
     assert np.abs(np.interp(whole.x, few.x, few.z) - whole.z).max() <= 0.02 + 1e-12
 
 
+def test_an_image_becomes_a_look(tmp_path, capsys):
+    """A picture of heights, black to white 2 um: a valid preset that ``author`` takes, and a page."""
+    from scratchwarp.image import quick
+    from scratchwarp.stage.validation import validate
+
+    heights = made(0.0).height
+    low, high = heights.min(), heights.max()
+    grey = np.rint(255 * (heights - low) / (high - low)).astype(np.uint8)
+    source, out = tmp_path / "scan.png", tmp_path / "scan.usda"
+    source.write_bytes(quick.png(np.ascontiguousarray(np.repeat(grey[..., None], 3, -1))))
+    assert topography.main([str(source), str(out)]) == 1
+    assert "--pitch" in capsys.readouterr().err
+    size = ["--pitch", "0.4", "--height", str(high - low), "--direction", "0"]
+    assert topography.main([str(source), str(out), *size, "--metal", "brass", "--json"]) == 0
+    record = json.loads(capsys.readouterr().out)
+    # 8 bits are 7 nm of 1.8 um, averaged along the groove
+    assert record["depth_um"] == pytest.approx(0.36, rel=0.2) and not record["periodic"]
+    assert [f for f in validate(out) if f.severity != "info"] == []
+    look = looks.read_preset(out)
+    assert look.layers == ("measured",) and look.values["scratch:layer:measured:width"] == pytest.approx(
+        record["width_um"], rel=1e-6
+    )
+    assert topography.main([str(source), str(source), *size]) == 1
+    assert topography.main([str(source), "x.obj", *size]) == 2
+
+
 def test_command_writes_a_profile_that_can_be_simulated(tmp_path):
     """NPZ in metres to USD, and to CSV in micrometres; the layer carries width and depth."""
     from pxr import Usd
 
     from scratchwarp import profiles
 
-    topography = made(0.5)
     source = tmp_path / "map.npz"
-    np.savez(source, height_m=topography.height * 1e-6, dx_m=0.4e-6, dy_m=0.4e-6)
+    np.savez(source, height_m=made(0.5).height * 1e-6, dx_m=0.4e-6, dy_m=0.4e-6)
     arguments = ["--waviness", "120", "--tolerance", "0.003"]
-    assert pipeline.main([str(source), str(tmp_path / "groove.usda"), *arguments]) == 0
-    assert pipeline.main([str(source), str(tmp_path / "groove.csv"), *arguments]) == 0
+    assert topography.main([str(source), str(tmp_path / "groove.usda"), *arguments]) == 0
+    first = (tmp_path / "groove.usda").read_bytes()
+    assert topography.main([str(source), str(tmp_path / "groove.usda"), *arguments]) == 0
+    assert (tmp_path / "groove.usda").read_bytes() == first
+    assert topography.main([str(source), str(tmp_path / "groove.csv"), *arguments]) == 0
     stage = Usd.Stage.Open(str(tmp_path / "groove.usda"))
-    points = np.array(stage.GetPrimAtPath("/Measured/profile").GetAttribute("scratch:points").Get())
+    points = np.array(stage.GetPrimAtPath("/Measured/Section").GetAttribute("scratch:points").Get())
     micrometres = np.loadtxt(tmp_path / "groove.csv", delimiter=",")
     layer = stage.GetPrimAtPath("/Measured")
     size = [layer.GetAttribute(f"scratch:layer:measured:{n}").Get() for n in ("width", "depth")]
@@ -104,7 +134,7 @@ def test_bad_maps_are_refused(content, tmp_path, capsys):
     else:
         source = tmp_path / "map.csv"
         np.savetxt(source, np.zeros((32, 32)), delimiter=",")
-    assert pipeline.main([str(source), str(tmp_path / "out.usda")]) == 1
+    assert topography.main([str(source), str(tmp_path / "out.usda")]) == 1
     error = capsys.readouterr().err
-    assert error.startswith("profile_from_topography: ") and len(error.splitlines()) == 1
+    assert error.startswith("topography: ") and len(error.splitlines()) == 1
     assert not (tmp_path / "out.usda").exists()
