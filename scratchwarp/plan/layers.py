@@ -10,7 +10,7 @@ import numpy as np
 from .. import optics
 from ..optics import metals
 from ..scene import Layer, Material, PreviewSurface, Scene, ScratchSurface, TextureInput
-from ..scratches.expand import Sublayer
+from ..scratches.expand import Sublayer, Threshold, computed
 from . import models
 from .choice import LayerPlan, ResponsePlan, TablePlan, Variation
 from .profiles import cross_section
@@ -200,13 +200,14 @@ def plan_layers(
     model: str | None = None,
     elsewhere: Callable[[Material, Layer], bool] = lambda material, layer: False,
     summed: bool = False,
+    threshold: Threshold = computed,
 ) -> tuple[tuple[tuple[LayerPlan, ...], ...], tuple[TablePlan, ...], tuple[ResponsePlan, ...], tuple[str, ...]]:
     """(sublayers of each material, tables to simulate, responses over solid angle, warnings).
 
     ``allowed(distribution)``: whether it may be on; ``max_error``: of a table's albedos, None for the default;
     ``known``: tables planned earlier for the same ``max_error``; ``model``: in place of every layer's own;
     ``elsewhere``: whether a layer is rendered by other means than sublayers; ``summed``: of theta
-    models with sums along a cone.
+    models with sums along a cone; ``threshold``: of ``scratches.expand.sublayers``.
     """
     tables = _Tables(scene, max_error, known, summed)
     responses = models.Responses()
@@ -219,7 +220,7 @@ def plan_layers(
             layer = replace(authored, model=model) if model else authored
             if elsewhere(material, layer):
                 continue
-            subs = [s for s in models.laid_out(layer) if allowed(s.distribution)]
+            subs = [s for s in models.laid_out(layer, threshold) if allowed(s.distribution)]
             try:
                 fresnel, keeps = reflector(scene, material, layer)
             except ValueError as error:

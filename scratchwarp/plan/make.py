@@ -12,6 +12,7 @@ from ..scene import Layer, Material, Scene, Settings
 from .choice import EffectChoice, EffectPlan, LayerPlan, ResponsePlan, TablePlan
 from .cost.aim import aim
 from .cost.shares import shares
+from .coverage import baked_thresholds
 from .effects import EFFECTS, Facts, sampled_lights
 from .grooves import laid_out, mark_near, near_layers, plan_grooves
 from .knobs import checked, turned_tables
@@ -78,6 +79,7 @@ def _planned(scene: Scene, settings: Settings, earlier: EffectPlan | None) -> Ef
     def elsewhere(material: Material, layer: Layer) -> bool:
         return waved(material, layer) or grooved(material, layer)
 
+    thresholds = baked_thresholds(scene.path)
     # closed forms along cones need tables whose sums follow from those of their slices
     summed = forced.get("lights.closedForm", any(MODELS[type(light)].arcs is not None for light in scene.lights))
     try:
@@ -85,8 +87,9 @@ def _planned(scene: Scene, settings: Settings, earlier: EffectPlan | None) -> Ef
         alike = before is not None and (before.max_error, before.knobs) == (decided.max_error, decided.knobs)
         known = earlier.tables if earlier is not None and alike else ()
         layers, tables, responses, warnings = plan_layers(
-            scene, allowed, decided.max_error, known, decided.model, elsewhere, summed
+            scene, allowed, decided.max_error, known, decided.model, elsewhere, summed, thresholds.find
         )
+        warnings += tuple(thresholds.warnings)
         tables = turned_tables(tables, decided.knobs, summed)
         waves = plan_waves(scene, waved, reflector, decided.model, decided.knobs)
         warnings += complaints(waves) + wide_ones(scene.materials)

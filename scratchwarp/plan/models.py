@@ -13,7 +13,7 @@ from .. import optics
 from ..reflectance import stencils
 from ..reflectance.responses import RESPONSES, facets, stencil_response, tabulated
 from ..scene import Layer, Measured, Scene
-from ..scratches.expand import Sublayer, sublayers
+from ..scratches.expand import Sublayer, Threshold, sublayers
 from .choice import ResponsePlan, TablePlan
 from .profiles import cross_section
 
@@ -44,11 +44,11 @@ def reflector_of(model: str, fresnel: Any, keeps: bool) -> tuple[Any, bool]:
     return fresnel, keeps
 
 
-def laid_out(layer: Layer) -> tuple[Sublayer, ...]:
-    """The sublayers of a layer; a scratch normal map covers everything."""
+def laid_out(layer: Layer, threshold: Threshold) -> tuple[Sublayer, ...]:
+    """The sublayers of a layer, as ``scratches.expand`` makes them; a scratch normal map covers everything."""
     if layer.model == "normalMap" and layer.normal_map is not None:
         return (Sublayer(layer, "full", layer.angle, 1.0, seed=layer.seed),)
-    return sublayers(layer)
+    return sublayers(layer, threshold)
 
 
 def changed(plan: TablePlan, model: str) -> TablePlan:

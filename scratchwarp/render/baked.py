@@ -1,7 +1,7 @@
 """Tables simulated beforehand, beside the stage: found again by the hash of all that decides them, never used stale.
 
 ``cup.usda`` has its tables in the folder ``cup.bake``: one file each, named by its key, and ``bake.json`` with the
-SHA-256 of every file and the keys of every layer.
+SHA-256 of every file and the keys of every layer. Coverage lies beside them, see ``plan.coverage``.
 """
 
 import hashlib
@@ -13,17 +13,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from ..plan.coverage import bake_folder
 from ..profiles import Table
 from ..profiles.cache import read_table, write_table
 from ..whole import whole
 
 INDEX = "bake.json"
 SUFFIX = ".profile.npz"
-
-
-def bake_folder(stage: str | Path) -> Path:
-    """The folder of the tables of a stage."""
-    return Path(stage).with_suffix(".bake")
 
 
 @dataclass

@@ -7,12 +7,15 @@ at random over one another, they cover as much as the author asked for: 1 - (1 -
 
 import math
 import zlib
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..scene import Layer
 from . import worley
+
+Threshold = Callable[[float, float, str], float]
 
 # Sets of parallel scratches that stand for a continuous spread of angles.
 SETS_RANDOM = 12
@@ -41,7 +44,14 @@ class Sublayer:
     curves: int = -1
 
 
-def _statistical(layer: Layer, angle: float, share: float, seed: int, offset: tuple[float, float]) -> Sublayer | None:
+def computed(wanted: float, variation: float, label: str) -> float:
+    """The threshold for a coverage; ``label`` names the layer to those who look it up."""
+    return worley.threshold(wanted, variation)
+
+
+def _statistical(
+    layer: Layer, angle: float, share: float, seed: int, offset: tuple[float, float], threshold: Threshold
+) -> Sublayer | None:
     length, width = max(layer.length, layer.width), layer.width
     variation = layer.width_variation
     if width <= 0.0:
@@ -55,7 +65,7 @@ def _statistical(layer: Layer, angle: float, share: float, seed: int, offset: tu
         covered = 1.0 - (1.0 - layer.coverage) ** share
         if covered <= 0.0:
             return None
-        radius = worley.threshold(min(covered, 0.99999), variation)
+        radius = threshold(min(covered, worley.MOST), variation, layer.label)
     if covered <= 0.0:
         return None
     if covered > 0.9999:
@@ -75,8 +85,11 @@ def _regular(layer: Layer, distribution: str, angle: float) -> Sublayer | None:
     return Sublayer(layer, distribution, angle, covered, seed=seed, offset=layer.offset)
 
 
-def sublayers(layer: Layer) -> tuple[Sublayer, ...]:
-    """The sets of scratches that ``layer`` stands for; none when nothing of it can be seen."""
+def sublayers(layer: Layer, threshold: Threshold = computed) -> tuple[Sublayer, ...]:
+    """The sets of scratches that ``layer`` stands for; none when nothing of it can be seen.
+
+    ``threshold(coverage, variation, label)``: of ``worley.threshold``, or what was computed before.
+    """
     if layer.distribution == "curves":
         return tuple(Sublayer(layer, "curves", 0.0, 1.0, seed=layer.seed, curves=index) for index in layer.curves)
     if layer.distribution in ("linear", "concentric", "spiral"):
@@ -97,7 +110,7 @@ def sublayers(layer: Layer) -> tuple[Sublayer, ...]:
             shift = rng.random(2) * 1024.0
             offset = (layer.offset[0] + float(shift[0]), layer.offset[1] + float(shift[1]))
             seed = int(rng.integers(1, 2**32, dtype=np.uint64))
-            made.append(_statistical(layer, layer.angle + spread * float(turn), 1.0 / sets, seed, offset))
+            made.append(_statistical(layer, layer.angle + spread * float(turn), 1.0 / sets, seed, offset, threshold))
     return tuple(s for s in made if s is not None)
 
 

@@ -12,6 +12,7 @@ from functools import lru_cache
 
 import numpy as np
 
+MOST = 0.99999  # coverage that a threshold is looked for
 MAX_RADIUS = 1.5  # beyond it every point of the plane is covered (largest distance to the nearest point is below it)
 
 

@@ -58,20 +58,37 @@ def test_a_stale_bake_is_said_and_not_used(worn, asset, capsys):
     assert "hair" in said and "is stale" in said and found.stats["tables_simulated"] == 1
     files = {p.name for p in bake_folder(worn).iterdir()}
     assert bake(worn) == 0
-    assert len({p.name for p in bake_folder(worn).iterdir()} - files) == 1 == len(files) - 1
+    assert len({p.name for p in bake_folder(worn).iterdir()} - files) == 1 == len(files) - 2
     again = rendered(worn)
     assert again.warnings == () and np.array_equal(again["color"], found["color"])
 
 
-@pytest.mark.parametrize("what", ["table", "index"])
+def test_coverage_is_found_again_and_never_stale(worn, asset, monkeypatch, capsys):
+    """A plan takes the thresholds that were baked and computes none; another coverage is computed, and said to be."""
+    from scratchwarp.scratches import worley
+
+    plain = rendered(worn)
+    capsys.readouterr()
+    assert bake(worn) == 0 and json.loads(capsys.readouterr().out)["thresholds"] == 1
+    asked = []
+    monkeypatch.setattr(worley, "threshold", lambda *given: asked.append(given) or 0.3)
+    found = rendered(worn)
+    assert asked == [] and found.warnings == () and np.array_equal(found["color"], plain["color"])
+    author(asset, "coverage=0.25")
+    other = sw.make_plan(sw.read(worn), sw.Settings(width=16, spp=2, quality="draft"))
+    assert asked and [said for said in other.warnings if "coverage" in said and "is stale" in said]
+
+
+@pytest.mark.parametrize("what", ["table", "index", "coverage"])
 def test_a_damaged_bake_is_said_and_not_used(worn, what, capsys):
     plain = rendered(worn)
     assert bake(worn) == 0
-    pattern = "*.npz" if what == "table" else "bake.json"
+    pattern = {"table": "*.npz", "index": "bake.json", "coverage": "coverage.json"}[what]
     (file,) = bake_folder(worn).glob(pattern)
     file.write_bytes(file.read_bytes()[:-20])
     found = rendered(worn)
-    assert any(file.name in said for said in found.warnings) and found.stats["tables_simulated"] == 1
+    assert any(file.name in said for said in found.warnings)
+    assert found.stats["tables_simulated"] == (0 if what == "coverage" else 1)
     assert np.array_equal(found["color"], plain["color"])
 
 
