@@ -1,4 +1,4 @@
-"""Pictures from a camera that moves about what the middle of the picture shows."""
+"""Pictures from a camera that moves about what the middle of the picture shows, or of geometry that turns."""
 
 import argparse
 import itertools
@@ -55,6 +55,37 @@ def orbit(scene: Any, about: Array, count: int) -> Iterator[Any]:
     for i in range(count):
         matrix = turned(scene.camera.transform, about, scene.up, 2 * np.pi * i / count)
         yield replace(scene, camera=replace(scene.camera, transform=matrix))
+
+
+def spin(scene: Any, about: Array, count: int, only: str = "") -> Iterator[Any]:
+    """The scene ``count`` times on one whole turn of its geometry about the up axis; camera and lights stay, and so do
+    the meshes that are lights.
+
+    ``only``: path of a prim, of which all instances below it turn alone. ValueError where there are none, or where the
+    scene has curves in space, which belong to no instance.
+    """
+    import numpy as np
+
+    path = only.rstrip("/")
+    turning = [
+        one.light < 0 and (not path or one.path == path or one.path.startswith(f"{path}/")) for one in scene.instances
+    ]
+    if not any(turning):
+        where = f" at or below {only}" if only else ""
+        raise ValueError(f"{scene.path}: there is no geometry{where} to turn")
+    if path and any(curves.space == "object" for curves in scene.curves):
+        raise ValueError(f"{scene.path}: curves in space turn with everything only; leave out --object")
+    for i in range(count):
+        turn = turned(np.eye(4), about, scene.up, 2 * np.pi * i / count)
+        instances = tuple(
+            replace(one, transform=turn @ one.transform) if mine else one
+            for one, mine in zip(scene.instances, turning, strict=True)
+        )
+        curves = tuple(
+            replace(one, points=one.points @ turn[:3, :3].T + turn[:3, 3]) if one.space == "object" else one
+            for one in scene.curves
+        )
+        yield replace(scene, instances=instances, curves=curves)
 
 
 def approach(scene: Any, about: Array, count: int, last: float) -> Iterator[Any]:

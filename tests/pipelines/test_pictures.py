@@ -103,6 +103,21 @@ def test_moves_keep_the_middle_in_the_middle(asset):
         assert np.isclose(towards @ -shot.camera.transform[:3, 2], before @ -scene.camera.transform[:3, 2])
 
 
+def test_the_object_turns_under_lights_that_stay(asset):
+    """Half a turn takes one quad to where the other was; the camera and the lights are what they were."""
+    scene = sw.read(asset)
+    middle = -scene.origin
+    _, half = camera_moves.spin(scene, middle, 2)
+    left, right = (next(one for one in shot.instances if one.path.endswith("left")) for shot in (scene, half))
+    assert np.allclose(right.transform[:3, 3] - middle, (left.transform[:3, 3] - middle) * (-1, 1, -1))
+    assert half.lights == scene.lights and half.camera is scene.camera
+    _, alone = camera_moves.spin(scene, middle, 2, "/World/geo/left")
+    moved = [one.path for one, was in zip(alone.instances, scene.instances, strict=True) if one is not was]
+    assert moved == ["/World/geo/left"]
+    with pytest.raises(ValueError, match="/World/nobody"):
+        list(camera_moves.spin(scene, middle, 2, "/World/nobody"))
+
+
 def test_zoom_and_turntable(asset, capsys):
     """The quad is met where it lies; frames are numbered; a contact sheet holds them."""
     scene = sw.read(asset, camera="/World/camera")
@@ -115,6 +130,7 @@ def test_zoom_and_turntable(asset, capsys):
     near, far = (image.read_layers(asset.with_name(f"z.0{i}.npz"))[0]["depth"][6, 8] for i in (2, 1))
     assert near == pytest.approx(far / 2, rel=0.02) and scene.camera.path == "/World/camera"
     assert cli.main(["zoom", str(asset), str(asset.with_name("z.png"))]) == 2
+    assert cli.main(["turntable", str(asset), str(asset.with_name("t.##.png")), "--object", "/World/geo/left"]) == 2
     assert cli.main(["zoom", str(asset), str(asset.with_name("z.##.png")), "--to", "0"]) == 2
 
 
