@@ -53,7 +53,15 @@ class Farm:
             import distributed.system
         except ImportError as error:
             raise ImportError(f'{address}: needs Dask; python -m pip install "scratchwarp[farm]"') from error
-        dask.config.set({"distributed.scheduler.allowed-failures": RETRIES})
+        dask.config.set(
+            {
+                "distributed.scheduler.allowed-failures": RETRIES,
+                # statistics that nobody looks at, on cores that render
+                "distributed.worker.profile.enabled": False,
+                "distributed.admin.system-monitor.interval": "2s",
+                "distributed.admin.system-monitor.gil.enabled": False,
+            }
+        )
         self._cluster: Any = None
         try:
             if number:

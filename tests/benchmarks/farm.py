@@ -1,7 +1,7 @@
 """Workers of a farm on this machine: 1, 2 and 4 of them, and what a task costs beside its samples. Run it by hand on an
 idle machine:
 
-    python tests/benchmarks/farm.py [--stage STAGE] [--width 480] [--spp 32] [--workers 1 2 4]
+    python tests/benchmarks/farm.py [--stage STAGE] [--width 480] [--spp 64] [--workers 1 2 4]
 
 Each farm renders the same image twice: the first render makes workers ready (imports, kernels), the second is measured,
 with the sending of the scene in it. Two workers on two cores must be at least 1.7 times as fast as one. The images
@@ -47,7 +47,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--stage")
     parser.add_argument("--width", type=int, default=480)
-    parser.add_argument("--spp", type=int, default=32)
+    parser.add_argument("--spp", type=int, default=64)
     parser.add_argument("--workers", type=int, nargs="+", default=[1, 2, 4])
     args = parser.parse_args()
     wp.config.log_level = wp.LOG_ERROR
@@ -55,7 +55,6 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         scene = sw.read(args.stage or author(folder, names=["ball"])[0])
     plan = sw.make_plan(scene, sw.Settings(width=args.width, spp=args.spp, threads=1))
-    alone = sw.render(scene, plan)
     alone = sw.render(scene, plan)
     print(f"no farm, 1 thread   trace {alone.stats['trace']:7.2f} s")
     seconds, same = {}, True
