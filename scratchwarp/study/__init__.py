@@ -5,7 +5,8 @@
 Files:
     sweeping        renders a scene at many settings and compares with a reference
     measurement     one rendering, and the file of all of them
-    measures        relative mean square error and FLIP
+    measures        relative mean square error and FLIP; table_error: of the tables themselves
+    calibration     prices of units of work on this machine; knob_errors: what knobs leave (both: plan/cost/*.json)
     report          rows, the front, and files
     chart, page     error against seconds as SVG, the report as HTML
     fit_candidates  a stencil model and its rivals, fitted to one measurement

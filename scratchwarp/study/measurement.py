@@ -22,7 +22,8 @@ class Measurement:
         seconds: part -> wall-clock seconds of ``PARTS``, and ``compile`` beside them, which only the first has.
         base: seconds of the defaults in the same round.
         error: relMSE against the reference. bias: against the knob's own reference value with the same samples, None
-            where several are turned. flip: None where it is not installed.
+            where several are turned. flip: None where it is not installed. table: error of the tables themselves, where
+            only they are turned (see ``table_error``).
     """
 
     knobs: Mapping[str, Value]
@@ -33,6 +34,7 @@ class Measurement:
     bias: float | None = None
     flip: float | None = None
     seed: int = field(default=0)
+    table: float | None = None
 
     @property
     def total(self) -> float:

@@ -87,7 +87,8 @@ render every setting in turns: a setting's seconds are its ratio to the defaults
 median, so that a slow moment of the machine does not count; the range is over rounds. relMSE is the mean over pixels of
 the squared difference over the squared luminance of the reference (plus a hundredth of its squared mean). Bias is the
 same against the knob's own reference value with the same samples: noise cancels, and what is left is what the knob
-does. FLIP is the difference seen when flipping between two images, 0 to 1.</p>
+does. Tables is the share of the light that tables themselves send elsewhere, against tables at the reference values of
+all knobs. FLIP is the difference seen when flipping between two images, 0 to 1.</p>
 {_table(report.rows)}
 <h2>How it was measured</h2>
 <table>{facts}</table>
@@ -100,15 +101,17 @@ does. FLIP is the difference seen when flipping between two images, 0 to 1.</p>
 
 def _table(rows: Sequence[Row]) -> str:
     timed = ("Setting", "Seconds", "Range", "Plan", "Simulate", "Trace", "Compile")
-    head = (*timed, "relMSE", "Range", "Bias", "FLIP", "Rounds")
+    head = (*timed, "relMSE", "Range", "Bias", "FLIP", "Tables", "Rounds")
     lines = []
     for row in rows:
         parts = [f"{row.parts[name]:.3g}" for name in ("plan", "simulate", "trace", "compile")]
         bias = "" if row.bias is None else f"{row.bias:.2g}"
         flip = "" if row.flip is None else f"{row.flip:.3f}"
+        tables = "" if row.table is None else f"{row.table:.2g}"
         cells = [
             html.escape(row.name), f"{row.seconds:.3g}", f"{row.fastest:.3g} to {row.slowest:.3g}", *parts,
-            f"{row.error:.3g}", f"{row.least_error:.2g} to {row.most_error:.2g}", bias, flip, str(row.rounds),
+            f"{row.error:.3g}", f"{row.least_error:.2g} to {row.most_error:.2g}", bias, flip, tables,
+            str(row.rounds),
         ]  # fmt: skip
         marked = ' class="front"' if row.front else ""
         lines.append(f"<tr{marked}>{''.join(f'<td>{cell}</td>' for cell in cells)}</tr>")
@@ -130,11 +133,16 @@ def _strip(report: Report, name: str, rows: Sequence[Row]) -> str:
             caption = f"{value}: {row.seconds:.3g} s, relMSE {row.error:.2g}"
             if row.bias is not None:
                 caption += f", bias {row.bias:.2g}"
+            if row.table is not None:
+                caption += f", tables {row.table:.2g}"
             figures.append(_figure(np.concatenate([found, off.astype(np.float32)]), caption))
     source = f" ({knob.source})" if knob.source else ""
+    falls = "Its error falls from value to value, within noise." if report.falls(name) else (
+        "Its error does not fall from value to value here: noise or another knob covers it."
+    )
     return (
         f"<h3>{html.escape(name)}</h3><p>At cheap values: {html.escape(knob.error + source)}. "
-        f'Default: {html.escape(str(default))}.</p><div class="row">{"".join(figures)}</div>'
+        f'Default: {html.escape(str(default))}. {falls}</p><div class="row">{"".join(figures)}</div>'
     )
 
 

@@ -31,6 +31,7 @@ class Row:
         error, least_error, most_error: relMSE against the reference, mean and range over rounds.
         bias: relMSE against the knob's reference value with the same samples: what is left without noise.
         flip: mean FLIP. rounds: renderings. front: nothing measured is both faster and closer.
+        table: error of the tables themselves, where only they are turned.
     """
 
     name: str
@@ -46,6 +47,7 @@ class Row:
     flip: float | None
     rounds: int
     front: bool = False
+    table: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,10 +87,24 @@ class Report:
         values = sorted(found, key=lambda v: KNOBS[name].values.index(v) if v in KNOBS[name].values else int(v))
         return tuple(found[value] for value in values)
 
+    def falls(self, name: str) -> bool:
+        """Whether a knob's error falls from value to value to the reference, within its noise.
+
+        What a knob does is its bias, where it has one; noise is what the least and the greatest error of a setting are
+        apart, and a tenth of the error.
+        """
+        rows = self.knob_rows(name)
+        values = [row.error if row.bias is None else row.bias for row in rows]
+        slack = [max(row.most_error - row.least_error, 0.1 * value) for row, value in zip(rows, values, strict=True)]
+        if any(row.bias is not None for row in rows):  # the reference has none of its own
+            values = [value for row, value in zip(rows, values, strict=True) if row.bias is not None]
+            slack = [0.1 * max(values) for _ in values]
+        return all(b <= a + s for a, b, s in zip(values, values[1:], slack, strict=False))
+
     def record(self) -> dict[str, Any]:
         """Everything but the images, as what JSON can hold."""
         rows = [{**asdict(row), "knobs": dict(row.knobs), "parts": dict(row.parts)} for row in self.rows]
-        knobs = {n: _described(n) for n in self.about["defaults"]}
+        knobs = {n: _described(n) | {"falls": self.falls(n)} for n in self.about["defaults"]}
         return {"about": {**self.about, **machine()}, "knobs": knobs, "rows": rows}
 
     def write(self, folder: str | Path) -> Path:
@@ -147,6 +163,7 @@ def _row(name: str, own: Sequence[Measurement], base: float) -> Row:
         bias=float(np.mean(biases)) if biases else None,
         flip=float(np.mean(flips)) if flips else None,
         rounds=len(own),
+        table=next((one.table for one in own if one.table is not None), None),
     )
 
 
@@ -164,10 +181,10 @@ def _table(rows: Sequence[Row]) -> str:
     head = ("name", "seconds", "fastest", "slowest", *PARTS, "compile", "error", "least_error", "most_error")
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow((*head, "bias", "flip", "rounds", "front"))
+    writer.writerow((*head, "bias", "flip", "table", "rounds", "front"))
     for row in rows:
         values = {**vars(row), **row.parts}
-        writer.writerow([values[name] for name in (*head, "bias", "flip", "rounds", "front")])
+        writer.writerow([values[name] for name in (*head, "bias", "flip", "table", "rounds", "front")])
     return stream.getvalue()
 
 

@@ -17,6 +17,7 @@ import numpy as np
 
 from ..plan import EffectPlan, make_plan
 from ..plan.knobs import KNOBS, acting, checked
+from ..profiles import Table
 from ..render.described import scene_digest
 from ..render.progress import Progress, silent
 from ..render.renderer import render
@@ -27,6 +28,7 @@ from ..whole import whole
 from .measurement import PARTS, Measurement, Notebook, setting_name
 from .measures import flip, rel_mse
 from .report import Report
+from .table_error import table_error, tables_of
 
 REFERENCE_FACTOR = 4
 REFERENCE_SEED = 2_000_000_000
@@ -110,6 +112,7 @@ class _Study:
         self.folder = folder
         self.images: dict[str, np.ndarray] = {}
         self.seconds_of_defaults: dict[int, float] = {}
+        self.tables: list[Table] = []  # at the reference values
 
     @property
     def spp(self) -> int:
@@ -171,10 +174,20 @@ class _Study:
             if not KNOBS[own].noise and value != KNOBS[own].reference and self._fits(own, KNOBS[own].reference):
                 bias = rel_mse(image, self._paired(paired, seed))
         error = rel_mse(image, self.reference)
-        row = Measurement(dict(knobs), repeat, seconds, base, error, bias, flip(image, self.reference), seed)
+        table = self._table_error(knobs) if repeat == 0 else None
+        row = Measurement(dict(knobs), repeat, seconds, base, error, bias, flip(image, self.reference), seed, table)
         self.book.add(row)
         self.images.setdefault(name, image)
         return time.perf_counter() - start
+
+    def _table_error(self, knobs: Setting) -> float | None:
+        """Error of the tables where only they are turned, or nothing is."""
+        if not self.plan.tables or any(KNOBS[name].place[0] != "table" for name in knobs):
+            return None
+        if not self.tables:
+            own = {n: v for n, v in self.best.items() if KNOBS[n].place[0] == "table"}
+            self.tables = tables_of(make_plan(self.scene, self._turned(own, 0)))
+        return table_error(tables_of(make_plan(self.scene, self._turned(knobs, 0))), self.tables)
 
     def _known_base(self, repeat: int) -> float | None:
         return next((row.total for row in self.book.rows if not row.knobs and row.repeat == repeat), None)

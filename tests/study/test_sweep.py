@@ -3,6 +3,7 @@
 import csv
 import json
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -47,6 +48,21 @@ def test_errors_fall_towards_the_reference(done):
     assert 0.7 * spp[0] > spp[1] and 0.7 * spp[1] > spp[2] > 1e-6
     bias = [row.bias for row in report.knob_rows("tables.bounces") if row.bias is not None]
     assert len(bias) == 2 and bias[0] > bias[1] > 0.0
+
+
+def test_tables_have_an_error_of_their_own(done):
+    """More bounces bring the table closer to that of 2000; samples do not touch it."""
+    report, _ = done
+    found = {row.name: row.table for row in report.rows}
+    assert found["spp=16"] is None
+    assert found["tables.bounces=1"] > found["tables.bounces=3"] > found["defaults"] == 0.0
+
+
+def test_a_knob_falls_or_does_not(done):
+    report, _ = done
+    assert report.falls("spp") and report.falls("tables.bounces")
+    rising = tuple(replace(row, bias=1.0 / row.bias if row.bias else None) for row in report.rows)
+    assert not replace(report, rows=rising).falls("tables.bounces")
 
 
 def test_the_front_is_what_nothing_beats(done):
