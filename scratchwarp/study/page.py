@@ -56,6 +56,7 @@ def page(report: Report) -> str:
         ("Reference", ", ".join(f"{n}={v}" for n, v in about["reference"].items())),
         ("Defaults", ", ".join(f"{n}={v}" for n, v in about["defaults"].items())),
         ("Study took", f"{about['seconds']:.0f} s"),
+        ("Left out for lack of time", f"{about.get('left', 0)} settings"),
         ("On", ", ".join(about["effects"])),
     ]
     facts = "".join(f"<tr><td>{html.escape(n)}</td><td style='text-align:left;white-space:normal'>"

@@ -52,7 +52,8 @@ def sweep(
         knobs: names, or name -> values; None: all that act on the scene, at all of their values.
         reference: name -> value of the reference; what is left out has the knob's own reference value.
         repeats: rounds. settings: of all renderings; its seed is that of the first round.
-        budget: seconds; the reference, all knobs once and the defaults are always rendered. None: no joint search.
+        budget: seconds; the reference and the defaults are always rendered, what does not fit is left to the next call
+            that is alike. None: no joint search.
         folder: measurements and images are kept there as they come, and found again by the next call that is alike.
 
     Raises ValueError on unknown knobs or values, and where the scene cannot be planned.
@@ -65,7 +66,8 @@ def sweep(
     todo = [job for job in jobs if not study.book.has(*job)]
     study.known_reference(lambda done, total, what: progress(done, total, f"reference, {what}"))
     for number, (setting, repeat) in enumerate(todo):
-        if budget is not None and repeat > 0 and time.perf_counter() - start > 0.6 * budget:
+        spent = time.perf_counter() - start
+        if budget is not None and study.book.rows and spent > (0.6 if repeat else 0.9) * budget:
             break
         progress(number, len(todo), "settings")
         study.measure(setting, repeat)
@@ -232,6 +234,7 @@ class _Study:
             "reference": {**self.best, "seed": REFERENCE_SEED},
             "defaults": {n: self.default(n) for n in self.ladders},
             "seconds": seconds,
+            "left": sum(not self.book.has(knobs, 0) for knobs in self.settings),
             "effects": [n for n, c in self.plan.effects.items() if c.enabled],
         }
         return Report(Report.rows_of(self.book.rows), about, self.reference, pictures)

@@ -1,0 +1,112 @@
+"""Error targets, predictions and prices on stages that nothing was calibrated with.
+
+    python tests/benchmarks/accuracy.py [FOLDER] [--width 96] [--stages kettle wood painted vinyl] [--quick]
+
+For each stage and each error from 0.1 to 0.003: the error reached against a reference of 4096 samples and the knobs'
+reference values, over what was asked for; what the chosen settings cost over the cheapest settings of a grid that meet
+it; predicted seconds over those taken. Everything is a ratio within one run, in processor seconds of one thread, but
+let the machine be idle. Prints a table and what share of the cases keeps each bound; FOLDER gets accuracy.json.
+"""
+
+import argparse
+import json
+import tempfile
+import time
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import scratchwarp as sw
+from scratchwarp.pipelines.author_demo import author
+from scratchwarp.plan.cost import forecast
+from scratchwarp.plan.knobs import KNOBS, acting
+from scratchwarp.study.measures import rel_mse
+
+STAGES = ("kettle", "wood", "painted", "vinyl", "column")
+ERRORS = (0.1, 0.03, 0.01, 0.003)
+GRID_SPP = (2, 4, 8, 16, 32, 64, 128, 256, 512)
+GRID_TABLES = ((16, 16), (32, 32), (64, 32), (64, 128), (128, 128), (256, 128))
+SEEDS = (1, 2)
+REFERENCE_SEED = 2_000_000_000
+
+
+def seconds(film: Any, plan: Any) -> float:
+    """What a render took but for compiling: simulating tables and tracing, on one thread."""
+    return float(film.stats["simulate"] + film.stats["trace"])
+
+
+def shot(scene: Any, **settings: Any) -> tuple[Any, Any, float]:
+    """(film, plan, processor seconds of all but compiling)."""
+    plan = sw.make_plan(scene, sw.Settings(threads=1, **settings))
+    start = time.process_time()
+    film = sw.render(scene, plan)
+    taken = time.process_time() - start - film.stats["compile"]
+    return film, plan, max(taken, 1e-3)
+
+
+def measure(name: str, scene: Any, width: int, quick: bool) -> list[dict[str, Any]]:
+    """Rows of one stage."""
+    known = acting(sw.make_plan(scene, sw.Settings(width=width)))
+    best = {n: KNOBS[n].reference for n in known if n.startswith("tables.") and n != "tables.theta"}
+    best["spp"] = 512 if quick else 4096
+    reference, _, _ = shot(scene, width=width, seed=REFERENCE_SEED, knobs=best)
+    shot(scene, width=width, spp=1)  # compiled, and every first launch done
+    grid = []
+    for bins, rays in GRID_TABLES if "tables.resolution" in known else ((0, 0),):
+        for spp in GRID_SPP[: 6 if quick else None]:
+            knobs = {"tables.resolution": bins, "tables.rays": rays} if bins else {}
+            film, _, taken = shot(scene, width=width, spp=spp, seed=SEEDS[0], knobs=knobs)
+            grid.append((taken, rel_mse(film["color"], reference["color"])))
+            if grid[-1][1] < 0.5 * ERRORS[-1]:
+                break
+    rows = []
+    for error in ERRORS[: 2 if quick else None]:
+        for seed in SEEDS[: 1 if quick else None]:
+            film, plan, taken = shot(scene, width=width, max_error=error, seed=seed)
+            there = replace(plan, settings=replace(plan.settings, spp=int(film.metadata["scratchwarp:spp"])))
+            guess = forecast(scene, there)
+            cheapest = min((t for t, e in grid if e <= error), default=float("nan"))
+            rows.append({
+                "stage": name, "error": error, "seed": seed, "samples": film.metadata["scratchwarp:spp"],
+                "reached": rel_mse(film["color"], reference["color"]) / error,
+                "estimated": film.stats["error"] / error, "missed": bool(film.stats["error"] > error),
+                "price": taken / cheapest, "seconds": taken,
+                "predicted": (guess.part("simulate") + guess.part("trace")) / max(seconds(film, plan), 1e-3),
+                "knobs": dict(plan.aim.knobs),
+            })  # fmt: skip
+            row = rows[-1]
+            print(f"{name:10s} {error:6g} seed {seed}: {row['samples']:5d} samples, reached {row['reached']:5.2f} e, "
+                  f"estimated {row['estimated']:5.2f} e, price {row['price']:5.2f}, predicted {row['predicted']:5.2f} "
+                  "of the time", flush=True)  # fmt: skip
+    return rows
+
+
+def main() -> None:
+    """Measure, print, write."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", nargs="?", default="accuracy")
+    parser.add_argument("--width", type=int, default=96)
+    parser.add_argument("--stages", nargs="+", default=list(STAGES))
+    parser.add_argument("--quick", action="store_true", help="two errors, one seed, small grid")
+    args = parser.parse_args()
+    folder = Path(args.folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    rows = []
+    with tempfile.TemporaryDirectory() as stages:
+        for file in map(Path, author(stages, names=args.stages)):
+            rows += measure(file.stem, sw.read(file), args.width, args.quick)
+            (folder / "accuracy.json").write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
+    reached = np.array([row["reached"] for row in rows])
+    price = np.array([row["price"] for row in rows])
+    predicted = np.array([row["predicted"] for row in rows])
+    price = price[np.isfinite(price)]
+    print(f"{len(rows)} cases: below e {np.mean(reached <= 1):.0%} (wanted 95 %), above e/5 "
+          f"{np.mean(reached > 0.2):.0%} (wanted: most), price at most 1.5 {np.mean(price <= 1.5):.0%} (wanted: all; "
+          f"median {np.median(price):.2f}), predicted within 2 "
+          f"{np.mean(np.abs(np.log2(predicted)) <= 1):.0%}")  # fmt: skip
+
+
+if __name__ == "__main__":
+    main()
