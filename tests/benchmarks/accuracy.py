@@ -4,14 +4,13 @@
 
 For each stage and each error from 0.1 to 0.003: the error reached against a reference of 4096 samples and the knobs'
 reference values, over what was asked for; what the chosen settings cost over the cheapest settings of a grid that meet
-it; predicted seconds over those taken. Everything is a ratio within one run, in processor seconds of one thread, but
-let the machine be idle. Prints a table and what share of the cases keeps each bound; FOLDER gets accuracy.json.
+it; predicted seconds over those taken. Seconds are of simulating tables and tracing on one thread: let the machine be
+idle. Prices that predictions go by are those of costs.json, or the user's own after study --calibrate. Prints a table and what share of the cases keeps each bound; FOLDER gets accuracy.json.
 """
 
 import argparse
 import json
 import tempfile
-import time
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -32,18 +31,11 @@ SEEDS = (1, 2)
 REFERENCE_SEED = 2_000_000_000
 
 
-def seconds(film: Any, plan: Any) -> float:
-    """What a render took but for compiling: simulating tables and tracing, on one thread."""
-    return float(film.stats["simulate"] + film.stats["trace"])
-
-
 def shot(scene: Any, **settings: Any) -> tuple[Any, Any, float]:
-    """(film, plan, processor seconds of all but compiling)."""
+    """(film, plan, seconds of simulating tables and tracing on one thread)."""
     plan = sw.make_plan(scene, sw.Settings(threads=1, **settings))
-    start = time.process_time()
     film = sw.render(scene, plan)
-    taken = time.process_time() - start - film.stats["compile"]
-    return film, plan, max(taken, 1e-3)
+    return film, plan, max(float(film.stats["simulate"] + film.stats["trace"]), 1e-3)
 
 
 def measure(name: str, scene: Any, width: int, quick: bool) -> list[dict[str, Any]]:
@@ -73,7 +65,7 @@ def measure(name: str, scene: Any, width: int, quick: bool) -> list[dict[str, An
                 "reached": rel_mse(film["color"], reference["color"]) / error,
                 "estimated": film.stats["error"] / error, "missed": bool(film.stats["error"] > error),
                 "price": taken / cheapest, "seconds": taken,
-                "predicted": (guess.part("simulate") + guess.part("trace")) / max(seconds(film, plan), 1e-3),
+                "predicted": (guess.part("simulate") + guess.part("trace")) / taken,
                 "knobs": dict(plan.aim.knobs),
             })  # fmt: skip
             row = rows[-1]
