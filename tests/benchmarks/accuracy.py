@@ -5,7 +5,8 @@
 For each stage and each error from 0.1 to 0.003: the error reached against a reference of 4096 samples and the knobs'
 reference values, over what was asked for; what the chosen settings cost over the cheapest settings of a grid that meet
 it; predicted seconds over those taken. Seconds are of simulating tables and tracing on one thread: let the machine be
-idle. Prices that predictions go by are those of costs.json, or the user's own after study --calibrate. Prints a table and what share of the cases keeps each bound; FOLDER gets accuracy.json.
+idle. Predictions go by the prices of costs.json, or by the user's own after study --calibrate. Prints a table and what
+share of the cases keeps each bound; FOLDER gets accuracy.json.
 """
 
 import argparse
