@@ -80,7 +80,7 @@ def exported(tmp_path_factory):
     image.write_layers({"color": sky().astype(np.float32)}, folder / "sky.exr")
     before = {path: path.read_bytes() for path in (stage, folder / "sky.exr")}
     out = folder / "out"
-    assert export.main([str(stage), str(out), "-w", "32", "--spp", "256", "--texels", "128", "--quiet"]) == 0
+    assert export.main([str(stage), str(out), "-w", "32", "--spp", "768", "--texels", "128", "--quiet"]) == 0
     assert all(path.read_bytes() == data for path, data in before.items())
     return stage, out, json.loads((out / "export.json").read_text())
 
@@ -153,8 +153,8 @@ def test_materialx_validates_and_translates(exported):
 
 
 def test_mitsuba_sees_what_we_see(exported):
-    """A path tracer by others with the exported BSDF, in a picture that the ball fills: within 2 %. Twice the samples
-    bring it to 0.9 %, of which 0.8 % are the noise of our own picture."""
+    """A path tracer by others with the exported BSDF, in a picture that the ball fills: within 2 %. Measured 1.1 %,
+    most of it the noise of both."""
     _, out, record = exported
     numbers = measured(record, "mitsuba")
     assert record["targets"]["mitsuba"]["notes"] == []
