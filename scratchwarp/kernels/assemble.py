@@ -118,6 +118,7 @@ def _glint_fields(plan: EffectPlan) -> dict[str, Any]:
         "glint_hierarchy": segments and plan.on("diffraction.hierarchy"),
         "glint_bands": plan.on("diffraction.bands"),
         "glint_gratings": plan.on("diffraction.bands") and plan.on("diffraction.coherent"),
+        "glint_fringes": plan.on("diffraction.distantLookup"),
         "glint_lookup": plan.on("diffraction.lookup") and not plan.on("diffraction.paperLights"),
         "glint_numeric": plan.on("diffraction.outlines") or plan.on("diffraction.angles"),
         "glint_areas": plan.on("diffraction.areaLights"),
@@ -160,10 +161,11 @@ def assemble(
     key = kernel_key(scene, plan)
     with_mesh_lights = any(isinstance(r, MeshLight) for r in scene.lights)
     placed = tuple((i.mesh, i.transform.tobytes(), i.materials, i.light) for i in scene.instances)
+    filtered = key.cone_taps or (key.glints and "dome" in key.lights)
     packed = parts.part(
         "lights",
-        (digest(scene.lights), scene.textures, (placed, scene.meshes) if with_mesh_lights else (), key.cone_taps),
-        lambda: lights.pack(scene, device, filtered=key.cone_taps),
+        (digest(scene.lights), scene.textures, (placed, scene.meshes) if with_mesh_lights else (), filtered),
+        lambda: lights.pack(scene, device, filtered=filtered),
     )
     kinds = [k for k in packed.kinds if k in key.lights]
     order = {name: i for i, name in enumerate(key.lights)}

@@ -38,6 +38,7 @@ class WaveLayer:
             (``wide_depths`` 0: none), see ``wide_integral``.
         outline, facets: rows of its cross-section in ``GlintArrays.outlines``, none for a rectangle.
         angles: 1 where the phase that the depth gives depends on the directions. maps: in ``GlintArrays.maps``, or -1.
+        fringes: 1 where ``GlintArrays.fringes`` holds its colours under lights without extent.
     """
 
     wave: int
@@ -58,6 +59,7 @@ class WaveLayer:
     facets: int
     angles: int
     maps: int
+    fringes: int
 
 
 @wp.struct
@@ -123,6 +125,7 @@ class GlintArrays:
     spectrum: Spectrum
     rules: Rules
     maps: MapSet
+    fringes: wp.array3d(dtype=wp.vec3)
 
 
 @wp.struct

@@ -7,7 +7,7 @@ each the light's intervals of xi_2 are integrated exactly (``interval_device``, 
 import warp as wp
 
 from ..lights.light_device import Light, LightArrays
-from ..optics.frames_device import to_local, to_world
+from ..optics.frames_device import to_local
 from ..optics.sobol_device import sobol_2d
 from ..reflectance.diffraction.interval_device import (
     behind_edge,
@@ -19,6 +19,7 @@ from ..reflectance.diffraction.response_device import along_variance
 from .direct_device import models_of
 from .geometry_device import Geometry
 from .glint_arrays_device import GlintArrays, Strand, WaveLayer, WaveMaterial
+from .glint_dome_device import CELLS, make_dome_light
 from .glint_sums_device import REACH, View, as_xi2, cosine_of, make_glint_sums, slice_at
 from .key import KernelKey
 from .lobe_device import largest
@@ -26,10 +27,10 @@ from .material_device import MaterialArrays
 from .world_device import LightSet
 
 _CORNERS = wp.constant(12)  # of the polygon that stands for a disk
-_DOME = wp.constant(16)  # parts of a dome's half circle
-_SHARE = wp.constant(8)  # of them that share a shadow ray
 FLAT = ("rect", "disk", "cylinder", "mesh")
 _MOST_KNOWN = 8  # lights whose visibility is kept from scratch to scratch
+KNOWN = _MOST_KNOWN + CELLS
+"""What is kept from scratch to scratch: of lights, and of cells of the hemisphere under a dome."""
 
 
 def make_strand_light(key: KernelKey, transmittance):
@@ -37,8 +38,9 @@ def make_strand_light(key: KernelKey, transmittance):
     models = models_of(key)
     names = [model.name for model in models]
     xi1_slices, radiance_of, radiance_from = make_glint_sums(
-        key.glint_method, key.glint_gratings, key.glint_lookup, key.glint_numeric, key.glint_pairs
+        key.glint_method, key.glint_gratings, key.glint_lookup, key.glint_numeric, key.glint_pairs, key.glint_fringes
     )
+    dome_light = make_dome_light(key, transmittance, radiance_of)
 
     @wp.func
     def cap_light(
@@ -190,54 +192,6 @@ def make_strand_light(key: KernelKey, transmittance):
         return total
 
     @wp.func
-    def dome_light(
-        a: GlintArrays,
-        wave: WaveMaterial,
-        layer: WaveLayer,
-        strand: Strand,
-        view: View,
-        lights: LightSet,
-        light: Light,
-        g: Geometry,
-        arrays: MaterialArrays,
-        p: wp.vec3,
-        ng: wp.vec3,
-        jitter: wp.vec2,
-    ) -> wp.vec3:
-        """The half circle xi_1 = 0 in parts of even cosine, each with the dome's radiance somewhere in it."""
-        total = wp.vec3(0.0, 0.0, 0.0)
-        u = wp.clamp(-view.o[0] - view.shift, -1.0, 1.0)
-        s = wp.sqrt((1.0 - u) * (1.0 + u))
-        places = wp.zeros(shape=1, dtype=wp.vec3)
-        cuts = wp.zeros(shape=1, dtype=wp.vec4)
-        seen = float(1.0)
-        for j in range(wp.static(len(models))):
-            if wp.static(names[j] == "dome"):
-                for k in range(_DOME):
-                    low = 2.0 * float(k) / float(_DOME) - 1.0
-                    high = 2.0 * float(k + 1) / float(_DOME) - 1.0
-                    middle = low + jitter[0] * (high - low)
-                    i = wp.vec3(u, s * middle, s * wp.sqrt((1.0 - middle) * (1.0 + middle)))
-                    w = to_world(strand.frame, i)
-                    if wp.static(key.shadows):
-                        # one ray for a few neighbours, towards one of them
-                        if light.shadow != 0 and k % _SHARE == 0:
-                            seen = 0.0
-                            at = wp.min(low + jitter[1] * float(_SHARE) * (high - low), 1.0)
-                            ray = wp.vec3(u, s * at, s * wp.sqrt((1.0 - at) * (1.0 + at)))
-                            toward = to_world(strand.frame, ray)
-                            if wp.dot(toward, ng) > 0.0:
-                                seen = transmittance(g, arrays, p, toward, light.shadow_distance, light.delta)
-                    radiance = wp.static(models[j].hit)(lights.arrays, light, p, w).radiance
-                    radiance = seen * radiance + (1.0 - seen) * wp.cw_mul(radiance, light.shadow_color)
-                    if largest(radiance) > 0.0:
-                        places[0] = wp.vec3(0.0, 1.0, wp.sqrt(wp.max(0.5 + 0.5 * wp.dot(i, view.o), 0.0)))
-                        cuts[0] = wp.vec4(view.o[1] + s * low, view.o[1] + s * high, 0.0, 0.0)
-                        part = radiance_of(a, wave, layer, strand, view, 1, 1, places, cuts)
-                        total += wp.cw_mul(radiance, part)
-        return total
-
-    @wp.func
     def strand_light(
         a: GlintArrays,
         strand: Strand,
@@ -275,9 +229,11 @@ def make_strand_light(key: KernelKey, transmittance):
                     if wp.static(names[j] == "dome"):
                         slope = strand.bend_n * view.o[2] - closeness * (1.0 - view.o[0] * view.o[0])
                         view.shift = slope * strand.mean
-                        total += light.specular * dome_light(
-                            a, wave, layer, strand, view, lights, light, g, arrays, p, ng, u
+                        over = dome_light(
+                            a, wave, layer, strand, view, lights, light, n, _MOST_KNOWN, known, g, arrays, p, ng, u
                         )
+                        total += light.specular * wp.vec3(over[0], over[1], over[2])
+                        rays += over[3]
                     else:
                         ls = wp.static(models[j].sample)(lights.arrays, light, p, u)
                         axis = ls.wi

@@ -19,6 +19,7 @@ from .glint_arrays_device import (
     wide_integral,
 )
 from .glint_bands_device import order_interval, order_point
+from .glint_fringes_device import scratch_fringes
 from .glint_pairs_device import pair_point, pair_slices
 from .lobe_device import largest
 
@@ -129,12 +130,27 @@ def point_light(
     return total
 
 
-def make_glint_sums(method: str, gratings: bool, lookup: bool, numeric: bool, pairs: bool = False):
+@wp.func
+def point_color(
+    a: GlintArrays, wave: WaveMaterial, layer: WaveLayer, strand: Strand, view: View, i: wp.vec3
+) -> wp.vec3:
+    """``point_light`` with all wavelengths at once."""
+    x = i[0] + view.o[0] + view.shift
+    xi2 = i[1] + view.o[1]
+    total = scratch_fringes(a.fringes, wave.sigma, x, view.spread, strand.width, strand.depth, xi2)
+    if largest(total) > 0.0:
+        cosine = wp.sqrt(wp.max(0.5 + 0.5 * wp.dot(i, view.o), 0.0))
+        total = wp.cw_mul(total, reflectance_color(a, layer.reflect, cosine))
+    return total * (_SQRT_PI * wave.sigma * strand.length * i[2])
+
+
+def make_glint_sums(method: str, gratings: bool, lookup: bool, numeric: bool, pairs: bool, fringes: bool):
     """(slices of a light, radiance under them, radiance under a direction).
 
     ``method``: "slices", "closed-form" or "paper"; ``gratings``: whether any pattern shows orders; ``lookup``: area
     lights by the tables of ``wide_integral`` instead of wavelengths; ``numeric``: some cross-section is no rectangle
-    or some phase depends on angles; ``pairs``: strands stand for pairs of scratches.
+    or some phase depends on angles; ``pairs``: strands stand for pairs of scratches;
+    ``fringes``: lights without extent by the table of ``scratch_fringes``.
     """
     single = method != "slices"
     across = across_integral_paper if method == "paper" else across_integral
@@ -269,6 +285,9 @@ def make_glint_sums(method: str, gratings: bool, lookup: bool, numeric: bool, pa
                 if layer.per_wavelength == 0:
                     total = wp.cw_mul(total, reflectance_color(a, layer.reflect, cosine))
                 return total
+        if wp.static(fringes):
+            if layer.fringes == 1:
+                return point_color(a, wave, layer, strand, view, i)
         return point_light(a, wave, layer, strand, view, i)
 
     return xi1_slices, radiance_of, radiance_from

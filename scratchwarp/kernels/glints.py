@@ -9,7 +9,7 @@ import warp as wp
 
 from ..optics import spectra
 from ..plan import EffectPlan
-from ..plan.waves import REGULAR, WaveLayerPlan, is_grating, looks_up, reflectances
+from ..plan.waves import REGULAR, WaveLayerPlan, is_grating, looks_up, looks_up_points, reflectances
 from ..reflectance.diffraction.arrays import rules
 from ..reflectance.diffraction.color import spectral_samples
 from ..scene import Curves, Scene
@@ -19,6 +19,7 @@ from ..scratches.segments import SegmentSet, Stroke, build, surroundings
 from .geometry import PackedGeometry
 from .glint_arrays_device import BandData, GlintArrays, Spectrum, WaveLayer, WaveMaterial
 from .glint_energy_device import BINS
+from .glint_fringes import fringes
 from .glint_maps import GlintMaps, directions
 from .glint_tables import SHARES, bin_width, depth_shares, wavelengths_of, wide_table
 from .key import KernelKey
@@ -163,6 +164,8 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
     segments = None
     if key.glint_footprint in ("exact", "paper"):
         arrays.rules = rules((16,))
+    if key.glint_fringes:
+        arrays.fringes = wp.array(fringes(), dtype=wp.vec3, device=device)
     if strokes:
         g = shape.arrays
         segments = build(strokes, g.points, g.uvs, g.dpdu, g.dpdv, shape.mesh, key.glint_hierarchy, device)
@@ -221,6 +224,7 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
         row.share, row.share_count, row.share_step = len(shares) * SHARES, SHARES, deepest / (SHARES - 1)
         shares.append(depth_shares(deepest, w.wave.roughness, own.outline))
         row.angles = int(w.wave.phase == "angleDependent")
+        row.fringes = int(key.glint_fringes and looks_up_points(w.wave, own))
         if own.outline is not None:
             row.outline, row.facets = sum(map(len, outlines)), len(own.outline)
             outlines.append(own.outline)

@@ -17,7 +17,7 @@ from .geometry_device import Geometry, Surface
 from .glint_arrays_device import GlintArrays, Glints, Strand
 from .glint_bands_device import band_strand
 from .glint_energy_device import BINS, COLUMNS, balance_of, take_all, take_share
-from .glint_lights_device import make_strand_light
+from .glint_lights_device import KNOWN, make_strand_light
 from .glint_maps_device import mask_at, turned_band
 from .glint_pairs_device import MOST_MATES, paired
 from .glint_paths_device import diffracted_way, random_after
@@ -179,7 +179,7 @@ def make_glints(key: KernelKey, transmittance):
         taken = wp.zeros(shape=wp.static(BINS), dtype=float)
         number = a.material[s.material]
         wave = a.waves[number]
-        known = wp.zeros(shape=8, dtype=wp.vec4)
+        known = wp.zeros(shape=wp.static(KNOWN), dtype=wp.vec4)
         if wp.static(key.glint_paths):
             # one of the strands, in proportion to what it covers
             drawn = Strand()

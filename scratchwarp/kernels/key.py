@@ -27,7 +27,8 @@ class KernelKey:
         glint_gratings: some of them show orders.
         glint_areas: under lights with an extent. glint_method: slices, closed-form or paper.
         glint_footprint: gaussian, exact, paper or point.
-        glint_lookup: colours under wide lights are looked up. glint_numeric: some cross-section is no
+        glint_lookup, glint_fringes: colours under wide lights, under lights without extent, are looked up.
+        glint_numeric: some cross-section is no
             rectangle, or some phase depends on angles. glint_pairs: scratches of a footprint interfere.
             glint_paths: paths go on that they diffract. glint_masks, glint_orientations: maps say where they are and
             which way regular ones run.
@@ -71,6 +72,7 @@ class KernelKey:
     glint_gratings: bool = False
     glint_areas: bool = False
     glint_lookup: bool = False
+    glint_fringes: bool = False
     glint_numeric: bool = False
     glint_pairs: bool = False
     glint_paths: bool = False

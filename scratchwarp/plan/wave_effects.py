@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..scene import Layer, Scene, Settings
-from .waves import REGULAR, is_grating, looks_up
+from .waves import REGULAR, is_grating, looks_up, looks_up_points
 
 # circles, spirals and curves go their own way
 TURNED = ("linear", "crosshatch", "random", "worley")
@@ -117,6 +117,15 @@ def _lookup(f: Any) -> Answer:
     return _answer(found, "colours under area lights come from a table", "wavelengths are sampled, as asked for")
 
 
+def _distant_lookup(f: Any) -> Answer:
+    if not any(getattr(x, "point", False) or getattr(x, "angle", 1.0) == 0.0 for x in f.scene.lights):
+        return False, "every light has an extent", ()
+    waves = [own for own in f.waves if own is not None]
+    found = [p.layer.label for own in waves for p in own.layers if looks_up_points(own.wave, p)]
+    on = "colours under lights without extent come from a table, no wavelength sampled"
+    return _answer(found, on, "wavelengths are sampled, as asked for or as cross-sections need it")
+
+
 def _outlines(f: Any) -> Answer:
     waves = [own for own in f.waves if own is not None]
     found = [p.layer.label for own in waves for p in own.layers if any(x is not None for x in p.outlines)]
@@ -145,6 +154,7 @@ WAVE_EFFECTS: dict[str, Callable[[Any], Answer]] = {
     "diffraction.orientation": _orientation,
     "diffraction.areaLights": _areas,
     "diffraction.lookup": _lookup,
+    "diffraction.distantLookup": _distant_lookup,
     "diffraction.outlines": _outlines,
     "diffraction.angles": _angles,
     "diffraction.exactFootprint": _never("Gaussian footprints; on: ellipses, integrated across the scratch"),

@@ -82,6 +82,12 @@ def looks_up(wave: Wave) -> bool:
     return wave.sampling in ("auto", "lookup") and wave.phase == "smallAngle"
 
 
+def looks_up_points(wave: Wave, plan: "WaveLayerPlan") -> bool:
+    """Whether the one-dimensional table holds a layer's colours under lights without extent: flat floors, no spread."""
+    regular = plan.layer.distribution in REGULAR and plan.layer.depth_variation > 0.0
+    return looks_up(wave) and plan.outline is None and wave.roughness == 0.0 and not regular
+
+
 def wave_index(material: Material, layer: Layer) -> Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]] | None:
     """The refractive index by wavelength: that of ScratchWaveAPI, else of the measured metal that the scratch is of."""
     wave = material.wave

@@ -71,10 +71,10 @@ def spectral_samples(wavelengths: Any) -> tuple[np.ndarray, np.ndarray]:
     total = xyz.sum(axis=0)
     if not np.all(total > 0.0):
         raise ValueError(f"wavelengths must reach into the visible range, got {wavelengths}")
-    return at, _to_rgb(xyz / total)
+    return at, to_rgb(xyz / total)
 
 
-def _to_rgb(equal_energy: np.ndarray) -> np.ndarray:
+def to_rgb(equal_energy: np.ndarray) -> np.ndarray:
     """Linear Rec.709 of XYZ ``[..., 3]`` whose white is (1, 1, 1): sums over wavelengths of each column are 1 before
     and after."""
     return spectra.xyz_to_rgb(spectra.adapt(equal_energy, np.ones(3), spectra.rgb_to_xyz(np.ones(3))))
@@ -95,7 +95,7 @@ def fringe_table() -> FringeTable:
     """The look-up table of ``color_device`` for the CIE 1931 observer, made once: 2561 rows, 0.25 MB."""
     wave = np.arange(spectra.WAVELENGTHS[0] + 0.5 * _GRID, spectra.WAVELENGTHS[-1], _GRID)
     density = spectra.cmf(wave)
-    density = _to_rgb(density / density.sum(axis=0))
+    density = to_rgb(density / density.sum(axis=0))
     k = 2.0 * np.pi / (wave * 1e-3)
     offsets = np.arange(0.0, _LONGEST + 0.5 * _STEP, _STEP)
     rows = np.empty((len(offsets), 4, 3))
