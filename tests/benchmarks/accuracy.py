@@ -22,6 +22,7 @@ import scratchwarp as sw
 from scratchwarp.pipelines.author_demo import author
 from scratchwarp.plan.cost import forecast
 from scratchwarp.plan.knobs import KNOBS, acting
+from scratchwarp.study.chart import chart
 from scratchwarp.study.measures import rel_mse
 
 STAGES = ("kettle", "wood", "painted", "vinyl", "column")
@@ -76,16 +77,32 @@ def measure(name: str, scene: Any, width: int, quick: bool) -> list[dict[str, An
     return rows
 
 
+def plots(folder: Path, stages: list[str], width: int, budget: float) -> None:
+    """Error against seconds of every knob of the stages, ``budget`` seconds each."""
+    with tempfile.TemporaryDirectory() as made:
+        for file in map(Path, author(made, names=stages)):
+            report = sw.study.sweep(sw.read(file), settings=sw.Settings(width=width, spp=8), budget=budget)
+            names = [name for name in report.about["defaults"] if len(report.knob_rows(name)) > 1]
+            joint = [row for row in report.rows if len(row.knobs) > 1]
+            drawn = chart({name: report.knob_rows(name) for name in names}, joint, report.pareto())
+            (folder / f"accuracy_{file.stem}.svg").write_text(drawn + "\n", encoding="utf-8")
+            print(folder / f"accuracy_{file.stem}.svg", flush=True)
+
+
 def main() -> None:
     """Measure, print, write."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", nargs="?", default="accuracy")
     parser.add_argument("--width", type=int, default=96)
     parser.add_argument("--stages", nargs="+", default=list(STAGES))
+    parser.add_argument("--plots", metavar="DIR", help="study the stages instead; DIR/accuracy_STAGE.svg, as in docs/")
     parser.add_argument("--quick", action="store_true", help="two errors, one seed, small grid")
     args = parser.parse_args()
     folder = Path(args.folder)
     folder.mkdir(parents=True, exist_ok=True)
+    if args.plots:
+        plots(Path(args.plots), args.stages, args.width, 60.0 if args.quick else 600.0)
+        return
     rows = []
     with tempfile.TemporaryDirectory() as stages:
         for file in map(Path, author(stages, names=args.stages)):
