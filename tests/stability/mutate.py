@@ -237,7 +237,7 @@ def many(rng, layer):
     prim = _any(rng, [p for p in _prims(layer) if p.typeName == "Material"])
     if prim is None:
         return
-    name, amount = _any(rng, (("density", 1.0), ("pitch", 20.0), ("coverage", 1.0), ("length", 1e7), ("density", 1e4)))
+    name, amount = _any(rng, (("density", 0.02), ("pitch", 20.0), ("coverage", 1.0), ("length", 1e7), ("density", 1e4)))
     full = f"scratch:layer:fine:{name}"
     made = prim.attributes.get(full) or Sdf.AttributeSpec(prim, full, Sdf.ValueTypeNames.Float)
     made.default = float(amount)
