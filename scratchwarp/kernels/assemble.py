@@ -92,6 +92,7 @@ def kernel_key(scene: Scene, plan: EffectPlan) -> KernelKey:
         grooves=on("grooves"),
         groove_crossings=on("grooves") and on("grooves.crossings"),
         groove_handover=on("grooves") and on("grooves.handover"),
+        groove_tapers=on("grooves") and on("grooves.tapers"),
         groove_bounces=on("grooves") and on("grooves.interreflection"),
         groove_glass=on("grooves") and on("grooves.transmission") and on("base.opacity"),
         responses=tuple(n for n, r in RESPONSES.items() if on(r.effect) and (distributions or r.base)),
@@ -251,7 +252,8 @@ def assemble(
         lambda: glints.pack(scene, plan, key, shape, device),
     )
     scratch_set.glints = sparkle.arrays
-    cut_by = (plan.settings.spp, sorted(turned(plan.settings.knobs, "groove").items()))
+    laid = tuple(tuple(x.layer.label for x in w.layers) if w is not None else () for w in plan.grooves)
+    cut_by = (plan.settings.spp, sorted(turned(plan.settings.knobs, "groove").items()), laid)
     cut = parts.part(
         "grooves",
         (digest(scene.materials, key, cut_by), scene.curves, scene.meshes, placed) if key.grooves else (),

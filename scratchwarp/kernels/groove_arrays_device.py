@@ -5,7 +5,7 @@ import warp as wp
 from ..optics.frames_device import Frame
 from ..reflectance.base_device import Base
 from ..reflectance.grooves.footprint_device import Footprint
-from ..reflectance.grooves.solid_device import GrooveSet, Piece
+from ..reflectance.grooves.solid_device import GrooveSet, Piece, Taper
 from ..scratches.grid_device import Grid
 
 wp.set_module_options({"enable_backward": False})
@@ -16,16 +16,22 @@ GROOVE_ROOM = wp.constant(64)  # pieces near a footprint
 @wp.struct
 class GrooveRecord:
     """One pattern, laid out in micrometres over a surface: ``scale`` micrometres a unit of u and of v; ``width``, the
-    mean of its grooves; ``handover`` 1: only where they are near. The other fields are those of ``GrooveSet`` and of
-    ``Grid``."""
+    mean of its grooves; ``handover`` 1: only where they are near, 2: they diffract elsewhere; then ``smooth`` is the
+    roughness of facets; ``most``: widest footprint [um] that is looked at at once, wider ones by parts. The other
+    fields are those of ``GrooveSet`` and of ``Grid``."""
 
     scale: wp.vec2d
     width: wp.float64
     handover: int
+    smooth: float
+    most: wp.float64
     bottom: wp.float64
     top: wp.float64
     skin: wp.float64
     mixed: int
+    sets: int
+    start: int
+    first_step: int
     origin: wp.vec2d
     cell: wp.float64
     columns: int
@@ -38,7 +44,8 @@ class GrooveArrays:
     """All patterns.
 
     Attributes:
-        of_face: pattern of each triangle, or -1. records: of patterns. pieces, vertices, starts, items: of all of them.
+        of_face: pattern of each triangle, or -1. records: of patterns. pieces, vertices, tapers, steps, starts, items:
+            of all of them.
         own: of each path, what its facets are made of in ``bases``, or -1 for what the surface is made of.
         slices: lines over a footprint where grooves cross or end. bounces: facets met after the first one.
         near, far: widths of a footprint in widths of a groove below which grooves are laid out, above which not.
@@ -48,6 +55,8 @@ class GrooveArrays:
     records: wp.array(dtype=GrooveRecord)
     pieces: wp.array(dtype=Piece)
     vertices: wp.array(dtype=wp.vec2d)
+    tapers: wp.array(dtype=Taper)
+    steps: wp.array(dtype=wp.vec3d)
     starts: wp.array(dtype=int)
     items: wp.array(dtype=int)
     own: wp.array(dtype=int)

@@ -84,7 +84,7 @@ def make_facet_lit(key: KernelKey, transmittance):
     """Device function: light sampling at a facet, compiled for ``key``."""
     models = models_of(key)
     linked, arrives = make_arrives(key, transmittance)
-    footprint_mean = make_footprint_mean(FacetStuff, stuff_radiance, key.groove_crossings)
+    footprint_mean = make_footprint_mean(FacetStuff, stuff_radiance, key.groove_crossings, key.groove_tapers)
 
     @wp.func
     def lit(spot: GrooveSpot, q: wp.vec3d, n: wp.vec3d, i: wp.vec3d) -> bool:

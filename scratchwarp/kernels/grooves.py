@@ -1,5 +1,6 @@
 """Layers that are laid out groove by groove -> device arrays: one pattern and grid for each material and surface."""
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,15 +13,17 @@ from ..plan.knobs import value
 from ..plan.layers import conductor_index
 from ..reflectance.base_device import CONDUCTOR, DIELECTRIC, SCHLICK, Base
 from ..reflectance.grooves import Pattern
-from ..reflectance.grooves.solid_device import Piece
+from ..reflectance.grooves.solid_device import Piece, Taper
 from ..scene import Curves, Scene
-from ..scratches.paths import Path, lay_out
+from ..scratches.grid import box
+from ..scratches.paths import Path, lay_out, repeated
 from ..scratches.project import all_in_uv
 from .geometry import PackedGeometry
 from .groove_arrays_device import GrooveArrays, GrooveRecord
 from .key import KernelKey
 
 MOST_PATHS = 400_000
+HELD = 16.0  # pieces under the widest footprint that is looked at at once
 _INHERITS = -1.0  # roughness of facets that are as rough as the surface
 
 Array = np.ndarray[Any, Any]
@@ -33,6 +36,21 @@ class PackedGrooves:
     arrays: GrooveArrays
     count: int = 0
     memory: int = 0
+
+
+def widest(pattern: Pattern) -> float:
+    """Diameter [um] of a footprint that touches ``HELD`` pieces on average, where they lie evenly."""
+    table, steps = pattern.table, pattern.repeats
+    wide = float((table["high"] - table["low"])[:, 0].mean())
+    if len(steps):
+        apart = np.abs((steps[:, :2] * table["across"]).sum(1))
+        return max(HELD / float((1.0 / apart).sum()), 2.0 * wide)
+    strips = pattern.strips()
+    low, high = box(strips)
+    length, width = 2.0 * strips["half"].T
+    # sum of (l + d) (w + d) = held area, solved for d
+    b, c = float(np.sum(length + width)), float(np.sum(length * width)) - HELD * float(np.prod(high - low))
+    return max((-b + math.sqrt(max(b * b - 4.0 * len(strips) * c, 0.0))) / (2.0 * len(strips)), 2.0 * wide)
 
 
 def _base(own: Any) -> Base:
@@ -57,7 +75,7 @@ def _section(plan: GrooveLayerPlan, path: Path) -> Array:
     """The cross-section of a path [um], its middle at x = 0."""
     layer = plan.layer
     deep = path.depth / layer.depth * layer.width if layer.depth > 0.0 else path.width
-    return (plan.section - (0.5, 0.0)) * (path.width, deep)
+    return (plan.section_at(path.part) - (0.5, 0.0)) * (path.width, deep)
 
 
 class _Joined:
@@ -70,13 +88,17 @@ class _Joined:
         self.items: list[Array] = []
         self.own: list[Array] = []
         self.records: list[Any] = []
+        self.tapers: list[Any] = []
+        self.steps: list[list[float]] = []
         self.count = self.corners = self.cells = self.listed = self.laid = 0
 
-    def add(self, pattern: Pattern, own: Array, scale: Array, width: float, handover: bool) -> int:
+    def add(self, pattern: Pattern, own: Array, scale: Array, width: float, plan: GroovePlan) -> int:
         """Number of a pattern; ``own``: the material of each of its paths."""
         table = pattern.table.copy()
         self.own.append(own.astype(np.int32))
         table["path"] += self.laid
+        table["taper"] += np.where(table["taper"] >= 0, len(self.tapers), 0)
+        self.tapers += pattern.grooves.tapers.numpy().tolist()
         table["first"] += self.corners
         table["partner"] += np.where(table["partner"] >= 0, self.count, 0)
         vertices = pattern.grooves.vertices.numpy()
@@ -84,11 +106,14 @@ class _Joined:
         starts, items = grid.data.starts.numpy(), grid.data.items.numpy()
         r: Any = GrooveRecord()
         r.scale, r.width = wp.vec2d(*scale), wp.float64(width)
-        for name in ("bottom", "top", "skin", "mixed"):
+        for name in ("bottom", "top", "skin", "mixed", "sets"):
             setattr(r, name, getattr(pattern.grooves, name))
         for name in ("origin", "cell", "columns", "rows"):
             setattr(r, name, getattr(grid.data, name))
-        r.first, r.handover = self.cells, int(handover)
+        r.start, r.first_step = self.count, len(self.steps)
+        self.steps += pattern.repeats.tolist()
+        r.first, r.handover = self.cells, int(plan.handover) + int(plan.waved)
+        r.smooth, r.most = plan.smooth, wp.float64(widest(pattern))
         self.tables.append(table)
         self.vertices.append(vertices)
         self.starts.append(starts + self.listed)
@@ -108,11 +133,16 @@ class _Joined:
         own = np.concatenate(self.own)
         arrays.pieces = wp.array(table, dtype=Piece, device=device)
         arrays.vertices = wp.array(vertices, dtype=wp.vec2d, device=device)
+        record: Any = Taper
+        tapers = np.array(self.tapers, dtype=record.numpy_dtype()) if self.tapers else np.zeros(0, record.numpy_dtype())
+        arrays.tapers = wp.array(tapers, dtype=Taper, device=device)
+        arrays.steps = wp.array(np.array(self.steps).reshape(-1, 3), dtype=wp.vec3d, device=device)
         arrays.starts = wp.array(starts, dtype=int, device=device)
         arrays.items = wp.array(items, dtype=int, device=device)
         arrays.own = wp.array(own, dtype=int, device=device)
         arrays.records = wp.array(self.records, dtype=GrooveRecord, device=device)
-        return int(table.nbytes + vertices.nbytes + starts.nbytes + items.nbytes + own.nbytes)
+        small = own.nbytes + tapers.nbytes + 24 * len(self.steps)
+        return int(table.nbytes + vertices.nbytes + starts.nbytes + items.nbytes + small)
 
 
 def _handed(shape: PackedGeometry) -> Array:
@@ -181,8 +211,14 @@ def _pattern(
     paths: list[Path] = []
     sections: list[Array] = []
     own: list[int] = []
-    for plan, number, own_curves in zip(groove.layers, numbers, curves, strict=True):
-        laid = lay_out(plan.layer, low, high, scale, hand, own_curves)
+    regular = [repeated(plan.layer, low, high, scale, hand) for plan in groove.layers]
+    steps = None
+    if all(sets is not None for sets in regular):
+        steps = [(*step, count) for sets in regular for _, step, count in sets or ()]
+    for plan, number, own_curves, sets in zip(groove.layers, numbers, curves, regular, strict=True):
+        laid = [path for path, _, _ in sets] if steps is not None and sets is not None else None
+        if laid is None:
+            laid = lay_out(plan.layer, low, high, scale, hand, own_curves)
         paths += laid
         drawn: dict[tuple[float, float], Array] = {}  # grooves of one size share a section
         for path in laid:
@@ -196,8 +232,10 @@ def _pattern(
                 "table, or make them longer or wider"
             )
     ends = [dict(plan.layer.extra).get("ends", "cap") for plan in groove.layers]
-    pattern = Pattern([path.points for path in paths], sections, "mitre" if "mitre" in ends else "cap")
+    scales = [path.scales for path in paths]
+    shape = "mitre" if "mitre" in ends else "cap"
+    pattern = Pattern([path.points for path in paths], sections, shape, scales, steps)
     if not len(pattern.table):
         return -1
     width = float(np.mean([path.width for path in paths]))
-    return joined.add(pattern, np.array(own), scale * np.array([1.0, hand]), width, groove.handover)
+    return joined.add(pattern, np.array(own), scale * np.array([1.0, hand]), width, groove)

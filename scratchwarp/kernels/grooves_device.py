@@ -31,7 +31,7 @@ wp.set_module_options({"enable_backward": False})
 
 LOW = wp.constant(wp.float64(0.05))  # lines lower than this are not followed to the plane
 SEED = wp.constant(wp.uint32(0x6A09E667))
-SMOOTH = wp.constant(0.003)  # roughness of facets that go over to tables, which take them for smooth
+PARTS = wp.constant(wp.uint32(0x510E527F))
 
 
 @wp.struct
@@ -58,17 +58,19 @@ def aside(g: Geometry, s: Surface, spot: GrooveSpot, q: wp.vec3d, d: wp.vec3d) -
 
 
 def make_grooves(key: KernelKey, transmittance):
-    """(spot, grooves, is_near): a footprint's place on a pattern, and what is seen there, compiled for ``key``."""
+    """(spot, grooves, is_near, handed): a footprint's place on a pattern, and what is seen there, compiled for
+    ``key``."""
     facet_lit = make_facet_lit(key, transmittance)
 
     @wp.func
     def spot_at(
         arrays: GrooveArrays, g: Geometry, s: Surface, frame: Frame, wo: wp.vec3, step_x: wp.vec3, step_y: wp.vec3,
-        glass: int, resolved: int,
+        glass: int, resolved: int, u: wp.vec2,
     ) -> GrooveSpot:  # fmt: skip
         """The footprint whose edges are ``step_x``, ``step_y`` as an ellipse of the same area on the pattern.
 
-        Bare glass (``glass`` 1), too, is laid out, without a groove.
+        Bare glass (``glass`` 1), too, is laid out, without a groove. Of a footprint that is wider than the pattern's
+        ``most`` a part as wide as that, at random by ``u``.
         """
         spot = GrooveSpot()
         number = arrays.of_face[s.face]
@@ -82,14 +84,18 @@ def make_grooves(key: KernelKey, transmittance):
                     number = -1
         if number >= 0:
             record = arrays.records[number]
-            if record.handover == 1:
-                spot.smooth = SMOOTH
+            spot.smooth = record.smooth
             spot.grooves.pieces = arrays.pieces
             spot.grooves.vertices = arrays.vertices
             spot.grooves.bottom = record.bottom
             spot.grooves.top = record.top
             spot.grooves.skin = record.skin
             spot.grooves.mixed = record.mixed
+            spot.grooves.sets = record.sets
+            spot.grooves.start = record.start
+            spot.grooves.first_step = record.first_step
+            spot.grooves.tapers = arrays.tapers
+            spot.grooves.steps = arrays.steps
             spot.grid.origin = record.origin
             spot.grid.cell = record.cell
             spot.grid.columns = record.columns
@@ -120,6 +126,16 @@ def make_grooves(key: KernelKey, transmittance):
             spot.footprint.center = wp.vec2d(s.uv[0] * sx, s.uv[1] * sy)
             spot.footprint.a1 = equal * wp.vec2d(wp.float64(ax[0]) * sx, wp.float64(ax[1]) * sy)
             spot.footprint.a2 = equal * wp.vec2d(wp.float64(ay[0]) * sx, wp.float64(ay[1]) * sy)
+            wide = wp.float64(2.0) * wp.max(wp.length(spot.footprint.a1), wp.length(spot.footprint.a2))
+            if wide > record.most and glass == 0:
+                part = record.most / wide
+                disk = sample_concentric_disk(u)
+                rest = wp.float64(1.0) - part
+                spot.footprint.center += rest * (
+                    wp.float64(disk[0]) * spot.footprint.a1 + wp.float64(disk[1]) * spot.footprint.a2
+                )
+                spot.footprint.a1 = part * spot.footprint.a1
+                spot.footprint.a2 = part * spot.footprint.a2
             if spot.o[2] > GRAZING:
                 ids = wp.zeros(shape=GROOVE_ROOM, dtype=int)
                 none = wp.vec2d(wp.float64(0.0), wp.float64(0.0))
@@ -140,13 +156,22 @@ def make_grooves(key: KernelKey, transmittance):
         return spot
 
     @wp.func
+    def handed(arrays: GrooveArrays, face: int) -> bool:
+        """Whether what diffracts of a triangle's material goes over to grooves near by."""
+        number = arrays.of_face[face]
+        result = bool(False)
+        if number >= 0:
+            result = arrays.records[number].handover == 2
+        return result
+
+    @wp.func
     def is_near(arrays: GrooveArrays, g: Geometry, s: Surface, step_x: wp.vec3, step_y: wp.vec3) -> float:
         """How often grooves are laid out under a footprint: always, or less and less where it is many of them wide."""
         result = float(1.0)
         number = arrays.of_face[s.face]
         if number >= 0:
             record = arrays.records[number]
-            if record.handover == 1:
+            if record.handover > 0:
                 ax = uv_motion(g, s, step_x)
                 ay = uv_motion(g, s, step_y)
                 sx = float(record.scale[0])
@@ -281,4 +306,4 @@ def make_grooves(key: KernelKey, transmittance):
         result.out = out
         return result
 
-    return spot_at, grooves, is_near
+    return spot_at, grooves, is_near, handed

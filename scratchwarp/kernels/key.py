@@ -34,7 +34,7 @@ class KernelKey:
             which way regular ones run.
         grooves: some scratches are laid out one by one. groove_crossings: they cross, bend or end;
             groove_bounces: light goes on inside; groove_glass: some are cut in what refracts; groove_handover: far away
-            they are as statistical as the others.
+            they are as statistical as the others; groove_tapers: their sizes change along them.
         closed_form: light along the cones of scratches is integrated; cone_taps: some of those lights are not even.
         sample_lights, sample_cones: scratches look for the other lights by drawing from these, from their own cone.
     """
@@ -85,6 +85,7 @@ class KernelKey:
     groove_bounces: bool = False
     groove_glass: bool = False
     groove_handover: bool = False
+    groove_tapers: bool = False
     closed_form: bool = False
     cone_taps: bool = False
     sample_lights: bool = False

@@ -6,7 +6,7 @@ import warp as wp
 
 from ..optics.filters_device import filter_offset_blackman_harris, filter_offset_box, filter_offset_gaussian
 from ..optics.frames_device import Frame, to_local
-from ..optics.hash_device import pixel_seed
+from ..optics.hash_device import pcg_hash, pixel_seed
 from ..optics.sobol_device import sobol_2d
 from ..reflectance.base_device import Base, base_albedo
 from .base_at_device import make_base_at
@@ -25,7 +25,7 @@ from .geometry_device import (
 )
 from .glint_paths_device import way_taken
 from .glints_device import left_of_base, less_specular, make_glints
-from .grooves_device import make_grooves
+from .grooves_device import PARTS, make_grooves
 from .key import KernelKey
 from .lobe_device import Lobe, largest, luminance
 from .material_device import MaterialArrays
@@ -51,7 +51,7 @@ def make_kernel(key: KernelKey):
     transmittance = make_transmittance(key, opacity_at)
     direct, seen = make_direct(key, transmittance)
     glints = make_glints(key, transmittance) if key.glints else None
-    spot_at, grooves, is_near = make_grooves(key, transmittance) if key.grooves else (None, None, None)
+    spot_at, grooves, is_near, handed = make_grooves(key, transmittance) if key.grooves else (None,) * 4
     choose, scatter, glow, pass_through, pass_probability = make_bounce(key, rotated, emission_at)
 
     @wp.kernel(module="unique", module_options={"enable_backward": False})
@@ -208,7 +208,10 @@ def make_kernel(key: KernelKey):
                                 way = wp.vec3(0.0, 0.0, 0.0)
                                 carried = wp.vec3(0.0, 0.0, 0.0)
                             if wp.static(key.glints):
-                                if scratches.glints.material[s.material] >= 0:
+                                shining = scratches.glints.material[s.material] >= 0
+                                if wp.static(key.groove_handover):
+                                    shining = shining and not (resolved == 1 and handed(scratches.grooves, s.face))
+                                if shining:
                                     closeness = float(0.0)
                                     if wp.static(not key.orthographic):
                                         closeness = 1.0 / wp.max(traveled, 1.0e-20)
@@ -268,7 +271,10 @@ def make_kernel(key: KernelKey):
                             within = -1
                             if wp.static(key.grooves):
                                 if lobe.scratch == 0:
-                                    spot = spot_at(scratches.grooves, g, s, frame, wo, step_x, step_y, glass, resolved)
+                                    where = sobol_2d(index, pair, pcg_hash(seed ^ PARTS))
+                                    spot = spot_at(
+                                        scratches.grooves, g, s, frame, wo, step_x, step_y, glass, resolved, where
+                                    )
                                     if spot.near == 1:
                                         if wp.static(key.groove_glass):
                                             # clear: of what scratches leave, what is not the diffuse lobe's

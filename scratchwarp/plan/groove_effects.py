@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
-_HANDOVER = "on: layers of model auto that the camera comes near to are laid out there"
+_FAR = "no layer of model auto is seen from nearer than six widths of its scratches a sample"
 
 Answer = tuple[bool, str, tuple[str, ...]]
 
@@ -35,9 +35,14 @@ def _transmission(f: Any) -> Answer:
     return bool(found), "cut in glass, which refracts" if found else "no groove is cut in anything transparent", found
 
 
+def _tapers(f: Any) -> Answer:
+    found = _found(f, lambda own: own.tapers)
+    return bool(found), "their sizes change along them" if found else "each groove is alike all along", found
+
+
 def _handover(f: Any) -> Answer:
     found = _found(f, lambda own: own.handover)
-    return bool(found), "statistical from afar, laid out near by" if found else _HANDOVER, found
+    return bool(found), "statistical from afar, laid out near by" if found else _FAR, found
 
 
 GROOVE_EFFECTS: dict[str, Callable[[Any], Answer]] = {
@@ -46,5 +51,6 @@ GROOVE_EFFECTS: dict[str, Callable[[Any], Answer]] = {
     "grooves.interreflection": _interreflection,
     "grooves.transmission": _transmission,
     "grooves.handover": _handover,
+    "grooves.tapers": _tapers,
 }
 """Effect -> its rule."""

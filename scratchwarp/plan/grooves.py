@@ -1,19 +1,20 @@
 """Which layers are laid out groove by groove, and what their facets are made of."""
 
-import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from ..scene import Layer, Material, PreviewSurface, Scene, ScratchSurface, Settings, TextureInput
+from .. import profiles
+from ..scene import Layer, Material, PreviewSurface, Scene, ScratchSurface, TextureInput
 from .choice import LayerPlan
 from .profiles import cross_section
 
 ARCS = 8  # chords for each arc of a smooth cross-section
 # Widths of a footprint in widths of a groove between which model auto goes over to tables.
 NEAR, FAR = 2.0, 6.0
+SMOOTH = 0.003
 MOST = 20_000  # scratches on a surface that model auto lays out
 
 
@@ -27,19 +28,44 @@ class GrooveLayerPlan:
     section: np.ndarray
     own: Any = None
 
+    def section_at(self, part: float) -> np.ndarray:
+        """The cross-section ``part`` of the way to the layer's other profile. Raises ValueError where there is none
+        between the two."""
+        layer = self.layer
+        if part <= 0.0 or layer.profile_end is None:
+            return self.section
+        first, last = cross_section(layer.profile, layer), cross_section(layer.profile_end, layer)
+        try:
+            return np.array(profiles.between(first, last, part).polyline(ARCS))
+        except ValueError as error:
+            raise ValueError(f"{layer.label}: {part:.3g} of the way to {layer.profile_end.path}: {error}") from None
+
 
 @dataclass(frozen=True, eq=False)
 class GroovePlan:
-    """What of a material is laid out; ``handover``: only where it is near; ``refracts``: they are cut in glass."""
+    """What of a material is laid out; ``handover``: only where it is near; ``waved``: it diffracts elsewhere;
+    ``tapers``: sizes change along single grooves; ``refracts``: they are cut in glass."""
 
     layers: tuple[GrooveLayerPlan, ...]
     handover: bool = False
+    waved: bool = False
+    tapers: bool = False
     refracts: bool = False
+
+    @property
+    def smooth(self) -> float:
+        """Roughness of facets that go over to statistics. Tables take them for smooth; light that diffracts is spread
+        by about a wavelength over a width (half of the lobes' peaks at the same angle)."""
+        if not self.handover:
+            return 0.0
+        least = min(own.layer.width for own in self.layers)
+        return min(max(SMOOTH, 0.34 * 0.55 / least), 0.1) if self.waved else SMOOTH
 
     @property
     def crossings(self) -> bool:
         """Whether some of its grooves may cross, bend or end: all but one set of parallel lines."""
-        return len(self.layers) > 1 or self.layers[0].layer.distribution != "linear"
+        only = self.layers[0].layer
+        return len(self.layers) > 1 or only.distribution != "linear" or self.tapers
 
     @property
     def bounces(self) -> bool:
@@ -72,45 +98,19 @@ def _own(layer: Layer) -> Any:
     )  # fmt: skip
 
 
-def _number(layer: Layer, scene: Scene, area: float) -> float:
-    """About how many scratches of a layer lie on ``area`` square metres."""
-    if layer.distribution == "curves":
-        return float(sum(len(scene.curves[c].counts) for c in layer.curves))
-    unit = 1e6 * math.sqrt(area) if layer.space == "surface" else 1.0
-    if layer.distribution in ("worley", "random"):
-        each = max(layer.length, layer.width) * layer.width
-        dense = layer.density * (1e-6 if layer.space == "surface" else 1.0)
-        return unit * unit * (dense or layer.coverage / max(each, 1e-300))
-    return unit / max(layer.pitch, 1e-300)
+def _tapers(layer: Layer, scene: Scene) -> bool:
+    """Whether the size of a layer's grooves changes along single ones."""
+    if layer.variation_length > 0.0 and max(layer.width_variation, layer.depth_variation) > 0.0:
+        return True
+    sizes = [scene.curves[c] for c in layer.curves] if layer.distribution == "curves" else []
+    return any(_changes(own.widths, own.counts) or _changes(own.depths, own.counts) for own in sizes)
 
 
-def near_layers(scene: Scene, settings: Settings, size: tuple[int, int], number: int) -> list[Layer]:
-    """Layers of model auto of a material that the camera comes near enough to: a sample's footprint is less than
-    ``FAR`` of their widths wide somewhere, and they have ``MOST`` scratches at most on each surface."""
-    camera, found = scene.camera, []
-    left, right, *_ = camera.window(*size, scene.options.conform, scene.options.pixel_aspect)
-    pixel = (right - left) / size[0] / math.sqrt(settings.spp or 1)
-    for layer in scene.materials[number].layers:
-        wide = True
-        for instance in scene.instances if layer.model == "auto" and layer.width > 0.0 else ():
-            if number not in instance.materials:
-                continue
-            mesh = scene.meshes[instance.mesh]
-            corners = mesh.points[mesh.triangles] @ instance.transform[:3, :3].T + instance.transform[:3, 3]
-            if not len(corners):
-                continue
-            area = 0.5 * float(np.linalg.norm(np.cross(*np.moveaxis(np.diff(corners, axis=1), 1, 0)), axis=-1).sum())
-            eye = camera.transform[:3, 3]
-            low, high = corners.min((0, 1)), corners.max((0, 1))
-            away = 1.0
-            if camera.projection != "orthographic":
-                away = float(np.linalg.norm(np.maximum(np.maximum(low - eye, eye - high), 0.0)))
-            width = layer.width * (1.0 if layer.space == "surface" else 1e6 * math.sqrt(max(area, 0.0)))
-            wide = wide and _number(layer, scene, area) <= MOST
-            if wide and 1.128e6 * pixel * away < FAR * width:
-                found.append(layer)
-                break
-    return found
+def _changes(values: np.ndarray, counts: np.ndarray) -> bool:
+    """Whether values of runs of ``counts`` differ within a run."""
+    inner = np.ones(max(len(values) - 1, 0), bool)
+    inner[np.cumsum(counts)[:-1] - 1] = False
+    return bool((np.abs(np.diff(values))[inner] > 1e-6 * np.abs(values).max(initial=0.0)).any())
 
 
 def plan_grooves(
@@ -118,12 +118,13 @@ def plan_grooves(
     wanted: Callable[[Material, Layer], bool],
     model: str | None = None,
     near: Callable[[int], list[Layer]] = lambda number: [],
+    waves: Sequence[Any] = (),
 ) -> tuple[GroovePlan | None, ...]:
     """For each material what of it is laid out groove by groove, None where nothing is.
 
     ``wanted(material, layer)``: whether it may; ``model``: in place of every layer's own; ``near(number)``: layers of a
-    material of which none is wanted that are laid out where they are near. Raises ValueError on a profile that cannot
-    be drawn.
+    material of which none is wanted that are laid out where they are near; ``waves``: for each material what of it
+    diffracts, or None. Raises ValueError on a profile that cannot be drawn.
     """
     used = {m for i in scene.instances for m in i.materials}
     made: list[GroovePlan | None] = []
@@ -140,7 +141,11 @@ def plan_grooves(
             own = [
                 GrooveLayerPlan(x, np.array(cross_section(x.profile, x).polyline(ARCS)), _own(x)) for x in near(number)
             ]
-        made.append(GroovePlan(tuple(own), handover, refracts(material.surface)) if own else None)
+        wave = waves[number] if number < len(waves) else None
+        names = {w.layer.label for w in wave.layers} if wave is not None else set()
+        waved = handover and any(x.layer.label in names for x in own)
+        tapers = any(_tapers(x.layer, scene) for x in own)
+        made.append(GroovePlan(tuple(own), handover, waved, tapers, refracts(material.surface)) if own else None)
     return tuple(made)
 
 

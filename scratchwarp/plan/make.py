@@ -14,10 +14,11 @@ from .cost.aim import aim
 from .cost.shares import shares
 from .coverage import baked_thresholds
 from .effects import EFFECTS, Facts, sampled_lights
-from .grooves import laid_out, mark_near, near_layers, plan_grooves
+from .grooves import laid_out, mark_near, plan_grooves, refracts
 from .knobs import checked, turned_tables
-from .layers import plan_layers, reflector
+from .layers import mean_color, plan_layers, reflector
 from .models import base_responses
+from .nearby import SMOOTH_BASE, near_layers
 from .resolve import resolve
 from .waves import complaints, diffracts, plan_waves, wide_ones
 
@@ -95,12 +96,20 @@ def _planned(scene: Scene, settings: Settings, earlier: EffectPlan | None) -> Ef
         warnings += complaints(waves) + wide_ones(scene.materials)
 
         def near(number: int) -> list[Layer]:
-            wanted = forced.get("grooves.handover", False) and forced.get("grooves", True)
-            if not wanted or decided.model not in (None, "auto") or scene.materials[number].wave is not None:
+            asked = forced.get("grooves.handover")
+            if asked is False or not forced.get("grooves", True) or decided.model not in (None, "auto"):
                 return []
-            return near_layers(scene, decided, size, number)
+            if forced.get("scratches.stencil", False):
+                return []
+            material = scene.materials[number]
+            if refracts(material.surface) and not asked:
+                return []
+            reflects = {x.label: reflector(scene, material, x) for x in material.layers}
+            tabled = {name: (by is not None, diffuse) for name, (by, diffuse) in reflects.items()}
+            smooth = mean_color(getattr(material.surface, "roughness", 0.0), scene)[0] <= SMOOTH_BASE
+            return near_layers(scene, decided, size, number, waves[number], asked is True, tabled, smooth)
 
-        grooves = plan_grooves(scene, grooved, decided.model, near)
+        grooves = plan_grooves(scene, grooved, decided.model, near, waves)
         layers = mark_near(layers, grooves)
         used = sorted({m for instance in scene.instances for m in instance.materials})
         responses, bases = base_responses(scene, used, responses, lambda effect: forced.get(effect, True))

@@ -44,7 +44,8 @@ def strip_table(center: np.ndarray, along: np.ndarray, half: np.ndarray) -> np.n
     return table
 
 
-def _box(strips: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def box(strips: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Lowest and highest corner of all strips."""
     c, s = np.abs(strips["along"]).T
     length, width = strips["half"].T
     reach = np.stack([length * c + width * s, length * s + width * c], 1)
@@ -62,7 +63,7 @@ def cell_size(strips: np.ndarray, rule: str = "balanced", footprint: float = 0.0
     """
     if rule not in RULES:
         raise ValueError(f"rule must be one of {', '.join(RULES)}, got {rule!r}")
-    low, high = _box(strips)
+    low, high = box(strips)
     span = np.maximum(high - low, 1e-300)
     width = 2.0 * float(strips["half"][:, 1].mean())
     length = 2.0 * strips["half"][:, 0]
@@ -78,7 +79,7 @@ def cell_size(strips: np.ndarray, rule: str = "balanced", footprint: float = 0.0
 
 def build(strips: np.ndarray, rule: str = "balanced", footprint: float = 0.0, cell: float | None = None) -> StripGrid:
     """The grid over ``strips`` (``strip_table``); ``cell`` overrides ``cell_size``. No strips: one empty cell."""
-    low, high = _box(strips) if len(strips) else (np.zeros(2), np.ones(2))
+    low, high = box(strips) if len(strips) else (np.zeros(2), np.ones(2))
     edge = cell if cell is not None else cell_size(strips, rule, footprint) if len(strips) else 1.0
     columns, rows = (max(int(np.ceil(x)), 1) for x in (high - low) / edge)
     data = Grid()

@@ -1,30 +1,57 @@
 """Scratches of one layer as polylines in the plane of the surface, each with its width and depth."""
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from ..scene import Curves, Layer
 from .generate import random_scratches
+from .perturb import along_path
 
 # A circle is drawn by chords that leave it by at most this part of a groove's width.
 CHORD = 0.02
 # More grooves, or corners of rings and spirals, than anything could draw.
 MOST_LINES, MOST_CORNERS = 400_000, 20_000_000
+PARTS = 8  # steps of the way from a profile to the other one
 
 Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)
 class Path:
-    """A polyline [k, 2] in micrometres over the surface, the width and the depth of its groove [um]."""
+    """A polyline [k, 2] in micrometres over the surface, the width and the depth of its groove [um]; ``scales`` [k, 2]:
+    of width and depth at each point, None: 1; ``part``: of the way to the layer's other profile."""
 
     points: Array
     width: float
     depth: float
+    scales: Array | None = None
+    part: float = 0.0
+
+
+def repeated(
+    layer: Layer, low: Array, high: Array, scale: Array, handed: float = 1.0
+) -> list[tuple[Path, Array, int]] | None:
+    """Regular lines as ``lay_out`` has them: the first of each set, how far [um] the next one is, how many there are.
+
+    None for other layers and where lines differ.
+    """
+    alike = layer.width_variation == layer.depth_variation == layer.variation_length == layer.profile_variation == 0.0
+    if layer.distribution not in ("linear", "crosshatch") or not alike or layer.width <= 0.0 or layer.pitch <= 0.0:
+        return None
+    size = np.asarray(scale, float) * (1.0, handed)
+    plane = size if layer.space == "surface" else np.array([1.0, handed])
+    corners = np.array([[u, v] for u in (low[0], high[0]) for v in (low[1], high[1])]) * plane
+    back, made = np.abs(size / plane), []
+    for number, angle in enumerate(_angles(layer)):
+        first, last, at = _range(layer, corners, angle, layer.offset[1 - number % 2] * layer.pitch)
+        across = np.array([-math.sin(angle), math.cos(angle)])
+        path = _stretched(at(first), back, layer.width, layer.depth)
+        made.append((path, layer.pitch * across * back, last - first + 1))
+    return made
 
 
 def lay_out(
@@ -43,10 +70,10 @@ def lay_out(
         if layer.distribution != "curves":
             unit = np.asarray(scale, float) if layer.space == "surface" else np.ones(2)
             own = [random_scratches(layer, tuple(low.tolist()), tuple(high.tolist()), tuple(unit.tolist()))]
-        return [path for set in own for path in _polylines(set, size)]
+        return _perturbed(layer, [path for set in own for path in _polylines(set, size)], size)
     plane = size if layer.space == "surface" else np.array([1.0, handed])  # from uv to the layer's own plane
     corners = np.array([[u, v] for u in (low[0], high[0]) for v in (low[1], high[1])]) * plane
-    angles = [layer.angle] if layer.distribution != "crosshatch" else [layer.angle, layer.angle + layer.cross_angle]
+    angles = _angles(layer)
     made: list[Array] = []
     if layer.width <= 0.0 or layer.pitch <= 0.0:
         return []
@@ -58,14 +85,18 @@ def lay_out(
             made += _circles(layer, corners, np.array(layer.center) * plane, shift)
         else:
             made += _spiral(layer, corners, np.array(layer.center) * plane, shift)
+    if layer.variation_length > 0.0:
+        back = np.abs(size / plane)
+        return _perturbed(layer, [_stretched(points, back, layer.width, layer.depth) for points in made], size)
     rng = np.random.default_rng([layer.seed & 0xFFFFFFFF, *layer.name.encode()])
     wide = 1.0 + layer.width_variation * (2.0 * rng.random(len(made)) - 1.0)
     deep = 1.0 + layer.depth_variation * (2.0 * rng.random(len(made)) - 1.0)
     back = np.abs(size / plane)
-    return [
+    laid = [
         _stretched(points, back, layer.width * w, layer.depth * d)
         for points, w, d in zip(made, wide, deep, strict=True)
     ]
+    return _perturbed(layer, laid, size)
 
 
 def _stretched(points: Array, back: Array, width: float, depth: float) -> Path:
@@ -76,6 +107,33 @@ def _stretched(points: Array, back: Array, width: float, depth: float) -> Path:
     return Path(points * back, width * across, depth * across)
 
 
+def _perturbed(layer: Layer, paths: list[Path], size: Array) -> list[Path]:
+    """Paths whose widths, depths and profiles vary as the layer says: sizes along each of them where it has a
+    ``variation_length``; the profile from path to path."""
+    rng = np.random.default_rng([layer.seed & 0xFFFFFFFF, 7, *layer.name.encode()])
+    unit = 1.0 if layer.space == "surface" else math.sqrt(abs(size[0] * size[1]))
+    amount = layer.profile_variation if layer.profile_end is not None else 0.0
+    made = []
+    for path in paths:
+        if layer.variation_length > 0.0 and max(layer.width_variation, layer.depth_variation) > 0.0:
+            points, scales = along_path(layer, path.points, layer.variation_length * unit, rng)
+            if path.scales is not None:
+                scales = scales * _at(path, points)
+            path = replace(path, points=points, scales=scales)
+        if amount > 0.0:  # a few steps, so that paths share their profiles
+            path = replace(path, part=amount * round(rng.random() * PARTS) / PARTS)
+        made.append(path)
+    return made
+
+
+def _at(path: Path, points: Array) -> Array:
+    """Scales of a path at points further along it."""
+    assert path.scales is not None
+    lengths = [np.linalg.norm(np.diff(p, axis=0), axis=1) for p in (path.points, points)]
+    first, last = (np.concatenate([[0.0], np.cumsum(step)]) for step in lengths)
+    return np.stack([np.interp(last, first, column) for column in path.scales.T], 1)
+
+
 def _polylines(curves: Curves, size: Array) -> list[Path]:
     made = []
     scale = math.sqrt(abs(size[0] * size[1]))
@@ -83,10 +141,16 @@ def _polylines(curves: Curves, size: Array) -> list[Path]:
     for count in curves.counts:
         own = slice(first, first + count)
         first += count
-        width = float(curves.widths[own].mean()) * (scale if curves.width_unit == "uv" else 1.0)
-        depth = float(curves.depths[own].mean()) * (scale if curves.depth_unit == "uv" else 1.0)
-        if width > 0.0 and count > 1:
-            made.append(Path(curves.points[own, :2] * size, width, depth))
+        widths, depths = np.asarray(curves.widths[own], float), np.asarray(curves.depths[own], float)
+        wide, deep = float(widths.max(initial=0.0)), float(depths.max(initial=0.0))
+        if wide <= 0.0 or count < 2:
+            continue
+        scales = None
+        if np.ptp(widths) > 1e-6 * wide or np.ptp(depths) > 1e-6 * deep:
+            scales = np.stack([widths / wide, depths / deep if deep > 0.0 else np.ones(count)], 1)
+        width = wide * (scale if curves.width_unit == "uv" else 1.0)
+        depth = deep * (scale if curves.depth_unit == "uv" else 1.0)
+        made.append(Path(curves.points[own, :2] * size, width, depth, scales))
     return made
 
 
@@ -98,7 +162,12 @@ def _bounded(layer: Layer, count: float, most: int, what: str) -> None:
         )
 
 
-def _lines(layer: Layer, corners: Array, angle: float, shift: float) -> list[Array]:
+def _angles(layer: Layer) -> list[float]:
+    return [layer.angle] if layer.distribution != "crosshatch" else [layer.angle, layer.angle + layer.cross_angle]
+
+
+def _range(layer: Layer, corners: Array, angle: float, shift: float) -> tuple[int, int, Callable[[int], Array]]:
+    """Numbers of the first and the last line, and what gives the two ends of one."""
     along, across = np.array([math.cos(angle), math.sin(angle)]), np.array([-math.sin(angle), math.cos(angle)])
     x, y = corners @ along, corners @ across + shift
     margin = 0.5 * float(x.max() - x.min()) + 10.0 * layer.pitch
@@ -106,9 +175,16 @@ def _lines(layer: Layer, corners: Array, angle: float, shift: float) -> list[Arr
     first = math.floor(float(y.min()) / layer.pitch) - 2
     last = math.ceil(float(y.max()) / layer.pitch) + 2
     ends = np.array([x.min() - margin, x.max() + margin])
-    return [
-        ends[:, None] * along + (i * layer.pitch + 0.5 * layer.width - shift) * across for i in range(first, last + 1)
-    ]
+
+    def line(i: int) -> Array:
+        return ends[:, None] * along + (i * layer.pitch + 0.5 * layer.width - shift) * across
+
+    return first, last, line
+
+
+def _lines(layer: Layer, corners: Array, angle: float, shift: float) -> list[Array]:
+    first, last, line = _range(layer, corners, angle, shift)
+    return [line(i) for i in range(first, last + 1)]
 
 
 def _radii(corners: Array, center: Array, layer: Layer) -> tuple[float, float]:

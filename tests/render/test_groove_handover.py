@@ -17,6 +17,7 @@ from scratchwarp.scene import Camera, DistantLight, Profile
 from . import groove_geometry as sheets
 from . import scenes
 
+ROUGH = sheets.ROUGH
 WIDTH = 100.0
 RATIOS = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 12.0)
 SPP = 64
@@ -42,7 +43,7 @@ def test_a_zoom_shows_no_switch():
     means, noise = [], []
     for ratio in RATIOS:
         settings = sw.Settings(
-            width=SIZE, height=SIZE, spp=SPP, filter="box", integrator="direct", effects={"grooves.handover": True}
+            width=SIZE, height=SIZE, spp=SPP, filter="box", integrator="direct"
         )
         # one plan, so one kernel, for every image
         plan = sw.make_plan(world, settings)
@@ -57,14 +58,13 @@ def test_a_zoom_shows_no_switch():
 
 
 def test_far_away_nothing_of_it_is_compiled():
-    """Footprints of 20 grooves: no groove code by itself; and none unless asked for."""
-    world = sheets.world(False, sheets.LAMBERT, 1.0, 0.0, model="auto")
+    """Footprints of 20 grooves: no groove code; nor where it is forced off."""
+    world = sheets.world(False, ROUGH, 1.0, 0.0, model="auto")
     asked = {"width": 8, "height": 8, "spp": 1}
-    near = {"grooves.handover": True}
-    assert sw.make_plan(world, sw.Settings(effects=near, **asked)).on("grooves")
-    assert not sw.make_plan(world, sw.Settings(**asked)).on("grooves")
+    assert sw.make_plan(world, sw.Settings(**asked)).on("grooves.handover")
+    assert not sw.make_plan(world, sw.Settings(effects={"grooves.handover": False}, **asked)).on("grooves")
     far = replace(world, camera=replace(world.camera, horizontal_aperture=0.02, vertical_aperture=0.02))
-    assert not sw.make_plan(far, sw.Settings(effects=near, **asked)).grooves[0]
+    assert not sw.make_plan(far, sw.Settings(**asked)).on("grooves")
 
 
 def test_only_what_a_pattern_needs_is_compiled():

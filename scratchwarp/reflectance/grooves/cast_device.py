@@ -7,7 +7,8 @@ corners need no rule of their own.
 
 import warp as wp
 
-from .solid_device import GrooveSet, Piece, flat, in_stretch, is_solid
+from .solid_device import GrooveSet, Piece, flat, in_stretch, is_solid, piece_at
+from .taper_device import meets_facet, meets_opening, normal_at
 
 wp.set_module_options({"enable_backward": False})
 
@@ -29,7 +30,7 @@ def path_of(grooves: GrooveSet, piece: int) -> int:
     """The number of the path that a piece belongs to, as it was given; -1 for the ground."""
     path = int(-1)
     if piece >= 0:
-        path = grooves.pieces[piece].path
+        path = piece_at(grooves, piece).path
     return path
 
 
@@ -90,7 +91,7 @@ def cast(
             hit.normal = n
             best = t
     for a in range(count):
-        piece = grooves.pieces[ids[a]]
+        piece = piece_at(grooves, ids[a])
         r = xy - piece.origin
         x = wp.dot(r, piece.across)
         dx = wp.dot(dxy, piece.across)
@@ -100,8 +101,22 @@ def cast(
         for j in range(piece.first, last):
             v = grooves.vertices[j]
             e = grooves.vertices[j + 1] - v
+            if piece.taper >= 0 and (v[1] != zero or e[1] != zero) and not (anything == 1 and best == zero):
+                t = meets_facet(grooves, piece, v, e, r, dxy, p[2], d[2], side)
+                if t > zero and t < best and in_stretch(piece, r + t * dxy, wp.float64(0.25) * grooves.skin):
+                    n = normal_at(grooves, piece, e, r + t * dxy, p[2] + t * d[2])
+                    if is_surface(grooves, ids, count, p + t * d, n):
+                        hit.distance = t
+                        hit.normal = n
+                        hit.piece = ids[a]
+                        best = t
             facing = e[0] * d[2] - e[1] * dx
-            if side * facing < zero and (v[1] != zero or e[1] != zero) and not (anything == 1 and best == zero):
+            if (
+                piece.taper < 0
+                and side * facing < zero
+                and (v[1] != zero or e[1] != zero)
+                and not (anything == 1 and best == zero)
+            ):
                 t = (e[0] * (v[1] - p[2]) - e[1] * (v[0] - x)) / facing
                 if t > zero and t < best:
                     w = (x + t * dx - v[0]) * e[0] + (p[2] + t * d[2] - v[1]) * e[1]
@@ -115,11 +130,18 @@ def cast(
                                 hit.normal = n
                                 hit.piece = ids[a]
                                 best = t
-            if grooves.mixed == 1 and v[1] == zero and dx != zero:
+            if grooves.mixed == 1 and v[1] == zero and (dx != zero or piece.taper >= 0):
                 # the wall that an opening cuts into what other pieces pile up
-                t = (v[0] - x) / dx
+                m = piece.across
+                t = zero
+                if piece.taper >= 0:
+                    opening = meets_opening(grooves, piece, v[0], r, dxy)
+                    t = opening[0]
+                    m = wp.vec2d(opening[1], opening[2])
+                else:
+                    t = (v[0] - x) / dx
                 if t > zero and t < best and p[2] + t * d[2] > zero and p[2] + t * d[2] < grooves.top:
-                    n = -side * wp.sign(dx) * wp.vec3d(piece.across[0], piece.across[1], zero)
+                    n = -side * wp.sign(wp.dot(m, dxy)) * wp.vec3d(m[0], m[1], zero)
                     if is_surface(grooves, ids, count, p + t * d, n):
                         hit.distance = t
                         hit.normal = n
@@ -128,7 +150,7 @@ def cast(
         for end in range(2):
             m = wp.where(end == 0, piece.end0, piece.end1)
             reach = wp.where(end == 0, piece.reach0, piece.reach1)
-            wall = wp.where(end == 0, piece.cap0, piece.cap1)
+            wall = (piece.caps >> end) & 1
             dm = wp.dot(m, dxy)
             if wall == 1 and dm != zero:
                 t = (reach - wp.dot(m, r)) / dm

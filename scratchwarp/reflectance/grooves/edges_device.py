@@ -7,7 +7,8 @@ a vertex of a profile, an end plane, or where facets of two pieces cross. Those 
 
 import warp as wp
 
-from .solid_device import GrooveSet, Piece
+from .solid_device import GrooveSet, Piece, piece_at
+from .taper_device import edge_seen
 
 wp.set_module_options({"enable_backward": False})
 
@@ -65,7 +66,16 @@ def facet_height(grooves: GrooveSet, piece: Piece, j: int, line: Line) -> Height
     x = wp.dot(line.base - piece.origin, piece.across)
     dx = wp.dot(line.step, piece.across)
     edge = e[0] - e[1] * s
-    if edge != zero and dx != zero:
+    if piece.taper >= 0:
+        # nearly flat: the plane through where its two edges are seen
+        one = edge_seen(grooves, piece, v, line.base, line.step, line.slope)
+        two = edge_seen(grooves, piece, w, line.base, line.step, line.slope)
+        if one[2] > zero and two[2] > zero and one[0] != two[0]:
+            result.rise = (two[1] - one[1]) / (two[0] - one[0])
+            result.at = one[1] - one[0] * result.rise
+            result.low = wp.min(one[0], two[0])
+            result.high = wp.max(one[0], two[0])
+    elif edge != zero and dx != zero:
         result.at = (e[0] * v[1] - e[1] * (v[0] - x)) / edge
         result.rise = e[1] * dx / edge
         b0 = (v[0] - v[1] * s - x) / dx
@@ -133,9 +143,9 @@ def wall_meets(
     n = int(found)
     if wp.max(wall.low, start) < wp.min(wall.high, stop):
         for c in range(count):
-            other = grooves.pieces[ids[c]]
+            other = piece_at(grooves, ids[c])
             for end in range(2):
-                if wp.where(end == 0, other.cap0, other.cap1) == 1:
+                if (other.caps >> end) & 1 == 1:
                     m = wp.where(end == 0, other.end0, other.end1)
                     reach = wp.where(end == 0, other.reach0, other.reach1) + wp.dot(m, other.origin)
                     b = meet(wall, wall_height(m, reach, line, grooves.bottom, grooves.top), start, stop)
@@ -159,12 +169,12 @@ def gather_edges(
     zero = wp.float64(0.0)
     n = int(0)
     for a in range(count):
-        piece = grooves.pieces[ids[a]]
+        piece = piece_at(grooves, ids[a])
         strip = strip_of(piece, line)
         shown = wp.max(strip[0], start) < wp.min(strip[1], stop)
         for end in range(2):
             m = wp.where(end == 0, piece.end0, piece.end1)
-            wall = wp.where(end == 0, piece.cap0, piece.cap1)
+            wall = (piece.caps >> end) & 1
             reach = wp.where(end == 0, piece.reach0, piece.reach1) + wp.dot(m, piece.origin)
             dm = wp.dot(m, line.step)
             if wall == 1 and dm != zero:
@@ -180,13 +190,16 @@ def gather_edges(
             for j in range(piece.first, piece.first + piece.count):
                 v = grooves.vertices[j]
                 b = (v[0] - v[1] * s - x) / dx
+                if piece.taper >= 0:
+                    seen = edge_seen(grooves, piece, v, line.base, line.step, line.slope)
+                    b = wp.where(seen[2] > zero, seen[0], stop)
                 if b > start and b < stop:
                     n = insert(events, n, b)
                 if j < piece.first + piece.count - 1:
                     own = facet_height(grooves, piece, j, line)
                     if wp.max(own.low, start) < wp.min(own.high, stop):
                         for c in range(a + 1, count):
-                            other = grooves.pieces[ids[c]]
+                            other = piece_at(grooves, ids[c])
                             strip = strip_of(other, line)
                             if wp.max(strip[0], wp.max(own.low, start)) < wp.min(strip[1], wp.min(own.high, stop)):
                                 for i in range(other.first, other.first + other.count - 1):
@@ -194,7 +207,12 @@ def gather_edges(
                                     if b < stop:
                                         n = insert(events, n, b)
                 if grooves.mixed == 1 and v[1] == zero:
+                    m = piece.across
                     reach = v[0] + wp.dot(piece.across, piece.origin)
-                    height = wall_height(piece.across, reach, line, zero, grooves.top)
+                    if piece.taper >= 0:
+                        taper = grooves.tapers[piece.taper]
+                        m = wp.normalize(piece.across - v[0] * taper.grow[0] * piece.along)
+                        reach = wp.dot(m, piece.origin + v[0] * taper.size[0] * piece.across)
+                    height = wall_height(m, reach, line, zero, grooves.top)
                     n = wall_meets(grooves, ids, count, line, height, start, stop, events, n)
     return n

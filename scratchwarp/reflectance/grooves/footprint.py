@@ -42,12 +42,12 @@ def means(
     total = len(inputs[0])
     out = wp.zeros(total, dtype=wp.vec3d, device="cpu")
     found = wp.zeros(total, dtype=wp.float64, device="cpu")
-    near = wp.zeros((total, min(max(len(g.table), 1), ROOM)), dtype=int, device="cpu")
+    near = wp.zeros((total, min(max(g.size, 1), ROOM)), dtype=int, device="cpu")
     given = [g.grooves, materials, slices, CHORDS.index(chord), g.grid.data]
     wp.launch(kernels.means, total, inputs=[*given, near, *inputs], outputs=[out, found], device="cpu")
     result, share = out.numpy(), found.numpy()
     for k in np.flatnonzero(share < 0.0):  # more grooves than there was room for
-        near = wp.zeros((1, len(g.table)), dtype=int, device="cpu")
+        near = wp.zeros((1, g.size), dtype=int, device="cpu")
         one, one_share = wp.zeros(1, dtype=wp.vec3d, device="cpu"), wp.zeros(1, dtype=wp.float64, device="cpu")
         rows = [x[int(k) : int(k) + 1] for x in inputs]
         wp.launch(kernels.means, 1, inputs=[*given, near, *rows], outputs=[one, one_share], device="cpu")

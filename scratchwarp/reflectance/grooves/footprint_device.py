@@ -14,7 +14,7 @@ import warp as wp
 
 from .cast_device import cast, path_of
 from .edges_device import EVENTS, Line, gather_edges
-from .solid_device import GrooveSet, Piece
+from .solid_device import GrooveSet, Piece, piece_at
 
 wp.set_module_options({"enable_backward": False})
 
@@ -124,18 +124,18 @@ def direction_of_lines(
         angle = PI * (wp.float64(tried) + wp.float64(0.37)) / wp.float64(16.0)
         w = wp.vec2d(wp.cos(angle), wp.sin(angle))
         score = wp.float64(1.0)
-        first = grooves.pieces[ids[0]].along
+        first = piece_at(grooves, ids[0]).along
         for a in range(3 * count + 2):
             m = slope_o
             if a == 3 * count + 1:
                 m = slope_i
             if a < count:
-                m = grooves.pieces[ids[a]].along
+                m = piece_at(grooves, ids[a]).along
             elif a < 2 * count:
-                m = grooves.pieces[ids[a - count]].end0
+                m = piece_at(grooves, ids[a - count]).end0
                 m = wp.vec2d(-m[1], m[0])
             elif a < 3 * count:
-                m = grooves.pieces[ids[a - 2 * count]].end1
+                m = piece_at(grooves, ids[a - 2 * count]).end1
                 m = wp.vec2d(-m[1], m[0])
             # the direction on the disk that runs along m: A^-1 m, up to its length
             t = wp.vec2d(m[0] * f.a2[1] - m[1] * f.a2[0], f.a1[0] * m[1] - f.a1[1] * m[0])
@@ -156,14 +156,14 @@ def direction_of_lines(
     return result
 
 
-def make_footprint_mean(Material: Any, radiance: Any, crossings: bool = True) -> Any:
+def make_footprint_mean(Material: Any, radiance: Any, crossings: bool = True, tapers: bool = True) -> Any:
     """The device function ``mean(grooves, ids, count, footprint, o, i, material, slices, chord) -> FootprintMean``.
 
     ``radiance(material: Material, path, n, o, i) -> vec3d`` gives what a facet of normal ``n`` sends to ``o`` under
     unit perpendicular irradiance from ``i``; ``Material`` is its struct, ``path`` the groove's number (-1 the ground).
     ``ids[0 .. count - 1]``: every piece that ``touches`` says yes to. ``chord`` 1 is exact, 0 Bosch's
     larger axis. Below the horizon nothing is seen or lit. ``crossings`` False compiles one line alone, for grooves that
-    all run in parallel and end nowhere near.
+    all run in parallel and end nowhere near; ``tapers`` False: for grooves that do not change along themselves.
     """
 
     @wp.func
@@ -203,7 +203,11 @@ def make_footprint_mean(Material: Any, radiance: Any, crossings: bool = True) ->
                         result.found += weight
                         n = hit.normal
                         q = top + hit.distance * down
-                        if wp.dot(n, i) > zero and i[2] > wp.float64(1e-9):
+                        bent = bool(False)  # a facet that may be twisted: looked at anew in every part
+                        if wp.static(tapers):
+                            if hit.piece >= 0:
+                                bent = piece_at(grooves, hit.piece).taper >= 0
+                        if (wp.dot(n, i) > zero or bent) and i[2] > wp.float64(1e-9):
                             # z = at + b' rise on the plane; then the line as the light sees it
                             facing = -wp.dot(n, down)
                             rise = -(n[0] * step[0] + n[1] * step[1]) / facing
@@ -225,15 +229,37 @@ def make_footprint_mean(Material: Any, radiance: Any, crossings: bool = True) ->
                                         m = half * (c + c1)
                                         z = at + m * rise
                                         y = base + m * step + z * slope_o
-                                        p = wp.vec3d(y[0], y[1], z) + wp.float64(2.0) * grooves.skin * n
+                                        p = wp.vec3d(y[0], y[1], z)
+                                        here = n
+                                        if wp.static(tapers):
+                                            if bent:
+                                                v = base + m * step
+                                                rise_o = above * slope_o
+                                                eye = wp.vec3d(v[0] + rise_o[0], v[1] + rise_o[1], above)
+                                                again = cast(grooves, ids, count, eye, down, wp.float64(wp.inf), 0, 0)
+                                                if again.distance < wp.float64(wp.inf):
+                                                    here = again.normal
+                                                    p = eye + again.distance * down
+                                                    z = p[2]
+                                        p += wp.float64(2.0) * grooves.skin * here
                                         up = wp.vec3d(slope_i[0], slope_i[1], one)
                                         limit = grooves.top - z + grooves.skin
-                                        dark = cast(grooves, ids, count, p, up, limit, 1, 0)
-                                        if dark.distance == wp.float64(wp.inf):
-                                            lit += part
+                                        clear = bool(wp.dot(here, i) > zero)
+                                        if clear:
+                                            dark = cast(grooves, ids, count, p, up, limit, 1, 0)
+                                            clear = dark.distance == wp.float64(wp.inf)
+                                        if clear:
+                                            if wp.static(tapers):
+                                                if bent:
+                                                    result.radiance += part * radiance(
+                                                        material, path_of(grooves, hit.piece), here, o, i
+                                                    )
+                                            if not bent:
+                                                lit += part
                                     if k < EVENTS:
                                         c = c1
-                            result.radiance += lit * radiance(material, path_of(grooves, hit.piece), n, o, i)
+                            if lit > zero:
+                                result.radiance += lit * radiance(material, path_of(grooves, hit.piece), n, o, i)
                 if j < EVENTS:
                     b = b1
         return result
@@ -256,7 +282,7 @@ def make_footprint_mean(Material: Any, radiance: Any, crossings: bool = True) ->
             part.center = base + wp.float64(0.5) * (start + stop) * step
             n = int(0)
             for a in range(count):
-                if touches(grooves, grooves.pieces[ids[a]], part, slope_of(o), slope_i):
+                if touches(grooves, piece_at(grooves, ids[a]), part, slope_of(o), slope_i):
                     if n < MOST:
                         mine[n] = ids[a]
                     n += 1
@@ -287,13 +313,15 @@ def make_footprint_mean(Material: Any, radiance: Any, crossings: bool = True) ->
                 slope_i = wp.vec2d(zero, zero)
                 if i[2] > wp.float64(1e-9):
                     slope_i = slope_of(i)
-                first = grooves.pieces[ids[0]]
+                first = piece_at(grooves, ids[0])
                 parallel = bool(True)
                 if wp.static(crossings):
                     for a in range(count):
-                        piece = grooves.pieces[ids[a]]
+                        piece = piece_at(grooves, ids[a])
                         turn = piece.along[0] * first.along[1] - piece.along[1] * first.along[0]
-                        if wp.abs(turn) > wp.float64(1e-12) or not passes_through(grooves, piece, f, slope_o, slope_i):
+                        if wp.abs(turn) > wp.float64(1e-12) or piece.taper >= 0:
+                            parallel = False
+                        if not passes_through(grooves, piece, f, slope_o, slope_i):
                             parallel = False
                 if parallel:
                     m = first.across

@@ -4,9 +4,38 @@ import warp as wp
 
 from ...scratches.grid_device import Grid, cell_at
 from .footprint_device import Footprint, swept_range, touches
-from .solid_device import GrooveSet
+from .solid_device import GrooveSet, piece_at
 
 wp.set_module_options({"enable_backward": False})
+
+
+@wp.func
+def find_repeated(
+    grooves: GrooveSet, f: Footprint, slope_o: wp.vec2d, slope_i: wp.vec2d, ids: wp.array(dtype=int), room: int
+) -> int:  # fmt: skip
+    """``find_near`` for pieces that repeat, which need no grid."""
+    count = int(0)
+    for s in range(grooves.sets):
+        piece = grooves.pieces[grooves.start + s]
+        step = grooves.steps[grooves.first_step + s]
+        apart = wp.dot(wp.vec2d(step[0], step[1]), piece.across)
+        x = swept_range(grooves, f, slope_o, slope_i, piece.across)
+        at = wp.dot(piece.origin, piece.across)
+        low = (x[0] - at - piece.high[0]) / apart
+        high = (x[1] - at - piece.low[0]) / apart
+        last = step[2] - wp.float64(1.0)
+        first = int(wp.clamp(wp.floor(wp.min(low, high)), wp.float64(0.0), last))
+        stop = int(wp.clamp(wp.ceil(wp.max(low, high)), wp.float64(0.0), last))
+        if stop - first > 2 * room:
+            count += stop - first
+        else:
+            for i in range(first, stop + 1):
+                k = i * grooves.sets + s
+                if touches(grooves, piece_at(grooves, k), f, slope_o, slope_i):
+                    if count < room:
+                        ids[count] = k
+                    count += 1
+    return count
 
 
 @wp.func
@@ -20,6 +49,8 @@ def find_near(
     (a footprint over so many grooves is the statistical models' affair). The footprint is enlarged by the grooves'
     heights and depths along the view and the light.
     """
+    if grooves.sets > 0:
+        return find_repeated(grooves, f, slope_o, slope_i, ids, room)
     x = swept_range(grooves, f, slope_o, slope_i, wp.vec2d(wp.float64(1.0), wp.float64(0.0)))
     y = swept_range(grooves, f, slope_o, slope_i, wp.vec2d(wp.float64(0.0), wp.float64(1.0)))
     i0 = wp.max(cell_at(grid, 0, x[0]), 0)
@@ -36,7 +67,7 @@ def find_near(
                 for a in range(wp.min(count, room)):
                     if ids[a] == k:
                         known = True
-                if not known and touches(grooves, grooves.pieces[k], f, slope_o, slope_i):
+                if not known and touches(grooves, piece_at(grooves, k), f, slope_o, slope_i):
                     if count < room:
                         ids[count] = k
                     count += 1

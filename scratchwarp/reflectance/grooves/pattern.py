@@ -12,12 +12,12 @@ from numpy.typing import ArrayLike
 from ...scratches.grid import StripGrid, build, strip_table
 from ..vectors import numbers
 from .section import closed_section, height_at, section_points
-from .solid_device import GrooveSet, Piece
+from .solid_device import GrooveSet, Piece, Taper
+from .tapers import Row, joined, simplified, tangents, taper_of, turn_is_straight
 
 ENDS = ("cap", "mitre")
 
 _SKIN = 1e-9  # of the largest length of a profile: how far off a surface its two sides are looked at
-_STRAIGHT = 1e-12  # sine of the largest turn at a vertex that is none
 
 
 @dataclass(frozen=True)
@@ -25,59 +25,14 @@ class Groove:
     """One path without doubled or straight vertices.
 
     ``points`` [k, 2]; ``section``: its closed section [n, 2]; ``loop``: whether the last point is the first;
-    ``number``: its place among the paths that were given.
+    ``number``: its place among the paths that were given; ``scales`` [k, 2] of x and z at each point, None: 1.
     """
 
     points: np.ndarray
     section: np.ndarray
     loop: bool
     number: int
-
-
-def _turn(a: np.ndarray, b: np.ndarray) -> float:
-    return float(a[0] * b[1] - a[1] * b[0])
-
-
-def _is_straight(a: np.ndarray, b: np.ndarray) -> bool:
-    return abs(_turn(a, b)) <= _STRAIGHT and float(a @ b) > 0.0
-
-
-def _tangents(points: np.ndarray) -> np.ndarray:
-    step = np.diff(points, axis=0)
-    return step / np.linalg.norm(step, axis=1, keepdims=True)
-
-
-def _simplified(path: np.ndarray) -> np.ndarray:
-    """Without zero-length segments, then without vertices in which the path goes straight on."""
-    points = path[np.concatenate([[True], np.any(np.diff(path, axis=0) != 0.0, axis=1)])]
-    if len(points) < 3:
-        return points
-    t = _tangents(points)
-    keep = [True, *(not _is_straight(a, b) for a, b in zip(t[:-1], t[1:], strict=True)), True]
-    return points[keep]
-
-
-def _joined(paths: list[tuple[np.ndarray, np.ndarray, int]]) -> list[tuple[np.ndarray, np.ndarray, int]]:
-    """Paths that go straight on where another one of the same section ends, made one."""
-    done: list[tuple[np.ndarray, np.ndarray, int] | None] = list(paths)
-    starting: dict[bytes, list[int]] = {}
-    for k, (points, _, _) in enumerate(paths):
-        starting.setdefault((points[0] + 0.0).tobytes(), []).append(k)
-    for k in range(len(done)):
-        own = done[k]
-        while own is not None:
-            points, section, number = own
-            for j in starting.get((points[-1] + 0.0).tobytes(), ()):
-                other = done[j]
-                if j == k or other is None or not (section is other[1] or np.array_equal(section, other[1])):
-                    continue
-                if _is_straight(_tangents(points[-2:])[0], _tangents(other[0][:2])[0]):
-                    own = done[k] = (_simplified(np.concatenate([points, other[0][1:]])), section, number)
-                    done[j] = None
-                    break
-            else:
-                own = None
-    return [row for row in done if row is not None]
+    scales: np.ndarray | None = None
 
 
 class Pattern:
@@ -90,6 +45,11 @@ class Pattern:
             groove digs, above it stands out. From left to right; overhangs are allowed.
         ends: "cap", a vertical wall at the end point; "mitre", beyond it as far as the profile reaches in x, with
             height max(f(x), f(y)), y the distance beyond (min where the profile only stands out).
+        scales: for each path None, or factors [k, 2] >= 0 of the profile's x and z at each of its points, between which
+            they change linearly.
+        repeats: for each path (x, y, n): it is there n times, each moved by (x, y) from the one before. Paths are then
+            straight, take no memory for their copies and need no grid, and what they do beyond their ends is not
+            looked for: they should reach beyond all footprints.
 
     Corners are mitred. Where grooves cross, the lower height counts where both dig in, the higher where both stand out,
     and what one digs cuts what another piles up. Paths that go straight on from another's end, with the same section,
@@ -97,11 +57,18 @@ class Pattern:
 
     Attributes:
         count: how many paths were given. grooves: what the device takes (``solid_device.GrooveSet``); table: its pieces
-            as a NumPy table; memory: bytes of pieces and profiles. grid: where the pieces lie
-            (``scratches.grid.StripGrid``, with bytes of its own).
+            as a NumPy table; size: how many pieces there are, repeats counted; memory: bytes of pieces and profiles.
+        grid: where the pieces lie (``scratches.grid.StripGrid``, with bytes of its own).
     """
 
-    def __init__(self, paths: Sequence[ArrayLike], profiles: Any, ends: str = "cap") -> None:
+    def __init__(
+        self,
+        paths: Sequence[ArrayLike],
+        profiles: Any,
+        ends: str = "cap",
+        scales: Sequence[ArrayLike | None] | None = None,
+        repeats: ArrayLike | None = None,
+    ) -> None:
         if ends not in ENDS:
             raise ValueError(f"ends must be one of {', '.join(ENDS)}, got {ends!r}")
         given = [numbers(f"paths[{i}]", p) for i, p in enumerate(paths)]
@@ -109,11 +76,20 @@ class Pattern:
             if p.ndim != 2 or p.shape[1] != 2 or len(p) < 1:
                 raise ValueError(f"paths[{i}] must have shape [k, 2], got {list(p.shape)}")
         sections = self._sections(profiles, len(given))
-        rows = [(_simplified(p), s, i) for i, (p, s) in enumerate(zip(given, sections, strict=True))]
-        rows = _joined([row for row in rows if len(row[0]) > 1])
+        sizes = self._scales(scales, given)
+        rows = [simplified(Row(p, s, i, t)) for i, (p, s, t) in enumerate(zip(given, sections, sizes, strict=True))]
+        rows = [row for row in rows if len(row.points) > 1]
+        self.repeats = np.zeros((0, 3))
+        if repeats is None:
+            rows = joined(rows)
+        else:
+            self.repeats = numbers("repeats", repeats)
+            if self.repeats.shape != (len(given), 3) or len(rows) != len(given) or any(len(p) != 2 for p in given):
+                raise ValueError(f"repeats must have shape [{len(given)}, 3], one row for each path of two points")
         self.count = len(given)
         self.ends = ends
-        self.paths = tuple(self._groove(*row) for row in rows)
+        self.paths = tuple(self._groove(row) for row in rows)
+        self.tapers: list[tuple[np.ndarray, np.ndarray]] = []
         self.grooves = self._pack()
 
     @staticmethod
@@ -132,13 +108,28 @@ class Pattern:
         return [made[id(p)] for p in several]
 
     @staticmethod
-    def _groove(points: np.ndarray, section: np.ndarray, number: int) -> Groove:
+    def _scales(scales: Any, given: list[np.ndarray]) -> list[np.ndarray | None]:
+        if scales is None:
+            return [None] * len(given)
+        if len(scales) != len(given):
+            raise ValueError(f"scales must be one for each of the {len(given)} paths, got {len(scales)}")
+        made: list[np.ndarray | None] = []
+        for i, (own, path) in enumerate(zip(scales, given, strict=True)):
+            array = None if own is None else numbers(f"scales[{i}]", own)
+            if array is not None and (array.shape != (len(path), 2) or array.min() < 0.0):
+                raise ValueError(f"scales[{i}] must have shape [{len(path)}, 2] and be 0 and more, got {array.shape}")
+            made.append(array)
+        return made
+
+    @staticmethod
+    def _groove(row: Row) -> Groove:
+        points = row.points
         loop = len(points) > 3 and bool(np.array_equal(points[0], points[-1]))
-        if loop:
-            t = _tangents(points)
-            if _is_straight(t[-1], t[0]):  # starts amid a straight stretch: start at a corner
+        if loop and row.scales is None:
+            t = tangents(points)
+            if turn_is_straight(t[-1], t[0]):  # starts amid a straight stretch: start at a corner
                 points = np.concatenate([points[1:-1], points[1:2]])
-        return Groove(points, section, loop, number)
+        return Groove(points, row.section, loop, row.number, row.scales)
 
     def _pack(self) -> GrooveSet:
         pieces: list[dict[str, Any]] = []
@@ -153,12 +144,10 @@ class Pattern:
                 total += len(groove.section)
             for piece in self._pieces(groove, len(pieces)):
                 low, high = groove.section.min(0), groove.section.max(0)
-                pieces.append(
-                    {**piece, "first": known[key], "count": len(groove.section), "low": low, "high": high}
-                    | {"path": groove.number}
-                )
-        z = np.concatenate([v[:, 1] for v in vertices]) if vertices else np.zeros(1)
-        x = np.concatenate([v[:, 0] for v in vertices]) if vertices else np.ones(1)
+                own = {"first": known[key], "count": len(groove.section), "low": low, "high": high, "taper": -1}
+                pieces.append({**own, **piece, "path": groove.number})
+        z = np.array([p[name][1] for p in pieces for name in ("low", "high")] or [0.0])
+        x = np.array([p[name][0] for p in pieces for name in ("low", "high")] or [1.0])
         record: Any = Piece
         table = np.zeros(len(pieces), dtype=record.numpy_dtype())
         for k, piece in enumerate(pieces):
@@ -171,20 +160,28 @@ class Pattern:
         made.bottom, made.top = wp.float64(min(z.min(), 0.0)), wp.float64(max(z.max(), 0.0))
         made.skin = wp.float64(_SKIN * max(np.abs(z).max(), np.abs(x).max()))
         made.mixed = int(z.min() < 0.0 < z.max())
+        record = Taper
+        tapers = np.zeros(len(self.tapers), dtype=record.numpy_dtype())
+        for k, (size, grow) in enumerate(self.tapers):
+            tapers["size"][k], tapers["grow"][k] = size, grow
+        made.tapers = wp.array(tapers, dtype=Taper, device="cpu")
+        made.sets, made.start, made.first_step = len(self.repeats), 0, 0
+        made.steps = wp.array(self.repeats, dtype=wp.vec3d, device="cpu")
         self.table = table
-        self.memory = table.nbytes + corners.nbytes
+        self.size = len(table) if not len(self.repeats) else len(self.repeats) * int(self.repeats[:, 2].max())
+        self.memory = table.nbytes + corners.nbytes + tapers.nbytes + self.repeats.nbytes
         return made
 
     def _pieces(self, groove: Groove, first: int) -> list[dict[str, Any]]:
         p, section = groove.points, groove.section
-        t = _tangents(p)
+        t = tangents(p)
         pieces = []
         last = len(t) - 1
         for k, along in enumerate(t):
             here = [(p[k], t[k - 1] if k > 0 or groove.loop else None, -1.0)]
             here.append((p[k + 1], t[(k + 1) % len(t)] if k < last or groove.loop else None, 1.0))
             piece: dict[str, Any] = {
-                "origin": p[k], "along": along, "across": (-along[1], along[0]), "partner": -1,
+                "origin": p[k], "along": along, "across": (-along[1], along[0]), "partner": -1, "caps": 0,
             }  # fmt: skip
             for end, (point, neighbour, sign) in enumerate(here):
                 normal, cap = sign * along, 1
@@ -192,18 +189,35 @@ class Pattern:
                     normal, cap = sign * (along + neighbour) / np.linalg.norm(along + neighbour), 0
                 elif neighbour is None and self.ends == "mitre":
                     cap = int(not self._goes_on(section))
-                piece |= {f"end{end}": normal, f"reach{end}": float((point - p[k]) @ normal), f"cap{end}": cap}
+                if groove.scales is not None:
+                    cap = 1  # facets turn there, and beyond a corner the two profiles do not quite agree
+                piece |= {f"end{end}": normal, f"reach{end}": float((point - p[k]) @ normal)}
+                piece["caps"] += cap << end
+            if groove.scales is not None:
+                made = taper_of(section, p[k], p[k + 1], groove.scales[k], groove.scales[k + 1], piece)
+                piece |= {"taper": len(self.tapers), "low": made[2], "high": made[3]}
+                self.tapers.append(made[:2])
             pieces.append(piece)
         if self.ends == "mitre" and not groove.loop and section[:, 0].max() > 0.0:
-            for point, along, out in ((p[0], t[0], -t[0]), (p[-1], t[-1], t[-1])):
+            for at, along, out in ((0, t[0], -t[0]), (-1, t[-1], t[-1])):
+                point, size = p[at], np.ones(2)
+                if groove.scales is not None:
+                    size = groove.scales[at]
+                    if size.min() <= 0.0:
+                        continue
                 across = np.array([-along[1], along[0]])
                 number = first + len(pieces)
-                low, high = section[:, 0].min(), section[:, 0].max()
+                low, high = section[:, 0].min() * size[0], section[:, 0].max() * size[0]
                 rim = int(section[:, 1].min() < 0.0 < section[:, 1].max())  # goes round, and drops at its outer edges
-                ends = {"end0": -out, "reach0": 0.0, "cap0": 0, "end1": out, "reach1": high, "cap1": rim}
+                ends = {"end0": -out, "reach0": 0.0, "end1": out, "reach1": high, "caps": 2 * rim}
                 pieces.append({"origin": point, "along": out, "across": across, "partner": number + 1, **ends})
-                ends = {"end0": -across, "reach0": -low, "cap0": rim, "end1": across, "reach1": high, "cap1": rim}
+                ends = {"end0": -across, "reach0": -low, "end1": across, "reach1": high, "caps": 3 * rim}
                 pieces.append({"origin": point, "along": -across, "across": out, "partner": number, **ends})
+                if groove.scales is not None:
+                    box = {"low": section.min(0) * size, "high": section.max(0) * size, "taper": len(self.tapers)}
+                    self.tapers.append((size, np.zeros(2)))
+                    pieces[-2] |= box
+                    pieces[-1] |= box
         return pieces
 
     def strips(self) -> np.ndarray:
@@ -223,7 +237,7 @@ class Pattern:
     @cached_property
     def grid(self) -> StripGrid:
         """The uniform grid in which the pieces near a footprint are looked up."""
-        return build(self.strips())
+        return build(self.strips() if not len(self.repeats) else self.strips()[:0])
 
     @staticmethod
     def _goes_on(section: np.ndarray) -> bool:

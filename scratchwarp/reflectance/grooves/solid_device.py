@@ -17,9 +17,11 @@ class Piece:
     """A straight stretch of a groove.
 
     A point at ``r`` from ``origin`` has profile x = dot(r, across); it belongs to the stretch where dot(r, end0) <=
-    reach0 and dot(r, end1) <= reach1 (unit normals outwards). ``cap0``, ``cap1``: 1 where a wall may stand at that end.
+    reach0 and dot(r, end1) <= reach1 (unit normals outwards). ``caps``: 1 where a wall may stand at the first end,
+    plus 2 where one may at the other.
     ``first``, ``count``: its vertices. ``low``, ``high``: smallest and largest x and z of the profile. ``partner``: the
-    other piece of a mitred end, or -1. ``path``: the groove it belongs to.
+    other piece of a mitred end, or -1. ``path``: the groove it belongs to. ``taper``: the ``Taper`` of a stretch whose
+    profile grows or shrinks, or -1; ``low`` and ``high`` then hold all along it.
     """
 
     origin: wp.vec2d
@@ -33,10 +35,19 @@ class Piece:
     reach1: wp.float64
     first: int
     count: int
-    cap0: int
-    cap1: int
+    caps: int
     partner: int
     path: int
+    taper: int
+
+
+@wp.struct
+class Taper:
+    """How the profile of a piece changes along it: at u = dot(r, along) x and z are ``size`` + u ``grow`` times those
+    of the vertices."""
+
+    size: wp.vec2d
+    grow: wp.vec2d
 
 
 @wp.struct
@@ -45,7 +56,8 @@ class GrooveSet:
 
     No profile facet crosses z = 0. ``bottom`` <= 0 <= ``top``: the lowest and highest z; ``skin``: the length by which
     a point is moved off a surface to see what lies on its sides; ``mixed``: 1 where something digs and something piles
-    up.
+    up. ``sets`` above 0: pieces repeat; number k is piece ``start`` + s, s = k mod ``sets``, moved k / ``sets`` times
+    by ``steps`` [``first_step`` + s], (x, y, how many there are).
     """
 
     pieces: wp.array(dtype=Piece)
@@ -54,6 +66,34 @@ class GrooveSet:
     top: wp.float64
     skin: wp.float64
     mixed: int
+    sets: int
+    start: int
+    first_step: int
+    steps: wp.array(dtype=wp.vec3d)
+    tapers: wp.array(dtype=Taper)
+
+
+@wp.func
+def piece_at(grooves: GrooveSet, k: int) -> Piece:
+    """Piece number ``k``."""
+    place = int(k)
+    if grooves.sets > 0:
+        place = grooves.start + k % grooves.sets
+    piece = grooves.pieces[place]
+    if grooves.sets > 0:
+        step = grooves.steps[grooves.first_step + k % grooves.sets]
+        piece.origin = piece.origin + wp.float64(k / grooves.sets) * wp.vec2d(step[0], step[1])
+    return piece
+
+
+@wp.func
+def size_at(grooves: GrooveSet, piece: Piece, r: wp.vec2d) -> wp.vec2d:
+    """What x and z of the profile are multiplied with at ``r`` from the piece's origin."""
+    size = wp.vec2d(wp.float64(1.0), wp.float64(1.0))
+    if piece.taper >= 0:
+        taper = grooves.tapers[piece.taper]
+        size = taper.size + wp.dot(r, piece.along) * taper.grow
+    return size
 
 
 @wp.func
@@ -73,7 +113,7 @@ def is_dug(vertices: wp.array(dtype=wp.vec2d), piece: Piece, x: wp.float64, z: w
     """Whether the profile leaves air at (x, z), z <= 0: an odd number of facets below."""
     zero = wp.float64(0.0)
     below = int(0)
-    if x >= piece.low[0] and x <= piece.high[0] and z > piece.low[1]:
+    if piece.taper >= 0 or (x >= piece.low[0] and x <= piece.high[0] and z > piece.low[1]):
         for j in range(piece.first, piece.first + piece.count - 1):
             a = vertices[j]
             b = vertices[j + 1]
@@ -88,7 +128,7 @@ def is_piled(vertices: wp.array(dtype=wp.vec2d), piece: Piece, x: wp.float64, z:
     """Whether the profile piles solid up at (x, z), z >= 0: an odd number of facets above."""
     zero = wp.float64(0.0)
     above = int(0)
-    if x >= piece.low[0] and x <= piece.high[0] and z < piece.high[1]:
+    if piece.taper >= 0 or (x >= piece.low[0] and x <= piece.high[0] and z < piece.high[1]):
         for j in range(piece.first, piece.first + piece.count - 1):
             a = vertices[j]
             b = vertices[j + 1]
@@ -101,14 +141,16 @@ def is_piled(vertices: wp.array(dtype=wp.vec2d), piece: Piece, x: wp.float64, z:
 @wp.func
 def digs_at(grooves: GrooveSet, k: int, xy: wp.vec2d, z: wp.float64) -> bool:
     """Whether piece ``k`` digs away the point (xy, z), z <= 0; at z = 0: whether it opens the plane there."""
-    piece = grooves.pieces[k]
+    piece = piece_at(grooves, k)
     result = bool(False)
     r = xy - piece.origin
     x = wp.dot(r, piece.across)
     if x >= piece.low[0] and x <= piece.high[0] and in_stretch(piece, r, wp.float64(0.25) * grooves.skin):
-        result = is_dug(grooves.vertices, piece, x, z)
+        size = size_at(grooves, piece, r)
+        if wp.min(size[0], size[1]) > wp.float64(0.0):
+            result = is_dug(grooves.vertices, piece, x / size[0], z / size[1])
         if result and piece.partner >= 0:
-            other = grooves.pieces[piece.partner]
+            other = piece_at(grooves, piece.partner)
             y = wp.dot(xy - other.origin, other.across)
             result = in_stretch(other, xy - other.origin, wp.float64(0.25) * grooves.skin)
             result = result and is_dug(grooves.vertices, other, y, z)
@@ -122,14 +164,16 @@ def piles_at(grooves: GrooveSet, k: int, xy: wp.vec2d, z: wp.float64) -> bool:
     At a mitred end the higher of the two profiles counts where they also dig (a rim goes round the end), else the
     lower one.
     """
-    piece = grooves.pieces[k]
+    piece = piece_at(grooves, k)
     result = bool(False)
     r = xy - piece.origin
     x = wp.dot(r, piece.across)
     if x >= piece.low[0] and x <= piece.high[0] and in_stretch(piece, r, wp.float64(0.25) * grooves.skin):
-        result = is_piled(grooves.vertices, piece, x, z)
+        size = size_at(grooves, piece, r)
+        if wp.min(size[0], size[1]) > wp.float64(0.0):
+            result = is_piled(grooves.vertices, piece, x / size[0], z / size[1])
         if piece.partner >= 0:
-            other = grooves.pieces[piece.partner]
+            other = piece_at(grooves, piece.partner)
             y = wp.dot(xy - other.origin, other.across)
             also = is_piled(grooves.vertices, other, y, z)
             if piece.low[1] < wp.float64(0.0):
@@ -155,7 +199,7 @@ def is_solid(grooves: GrooveSet, ids: wp.array(dtype=int), count: int, p: wp.vec
                 result = bool(True)
                 if grooves.mixed == 1:
                     for c in range(count):
-                        own = ids[c] == ids[a] or ids[c] == grooves.pieces[ids[a]].partner
+                        own = ids[c] == ids[a] or ids[c] == piece_at(grooves, ids[a]).partner
                         if result and not own and digs_at(grooves, ids[c], xy, zero):
                             result = False
     return result

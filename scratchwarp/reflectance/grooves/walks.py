@@ -51,7 +51,7 @@ def follow(
     arrays = [*plane, directions("omega_o", omega_o), directions("omega_i", omega_i)]
     lead, inputs = to_device(arrays, [wp.vec2d] * 3 + [wp.vec3d] * 2)
     total = len(inputs[0])
-    near = wp.zeros((total, min(max(len(g.table), 1), ROOM)), dtype=int, device="cpu")
+    near = wp.zeros((total, min(max(g.size, 1), ROOM)), dtype=int, device="cpu")
     light = wp.zeros(total, dtype=wp.vec3d, device="cpu")
     shape = (total, samples if keep else 0)
     rows = [wp.zeros(shape, dtype=wp.vec3d, device="cpu") for _ in range(3)]
