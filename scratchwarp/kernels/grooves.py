@@ -1,6 +1,5 @@
 """Layers that are laid out groove by groove -> device arrays: one pattern and grid for each material and surface."""
 
-import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,7 +14,6 @@ from ..reflectance.base_device import CONDUCTOR, DIELECTRIC, SCHLICK, Base
 from ..reflectance.grooves import Pattern
 from ..reflectance.grooves.solid_device import Piece, Taper
 from ..scene import Curves, Scene
-from ..scratches.grid import box
 from ..scratches.paths import Path, lay_out, repeated
 from ..scratches.project import all_in_uv
 from .geometry import PackedGeometry
@@ -36,21 +34,6 @@ class PackedGrooves:
     arrays: GrooveArrays
     count: int = 0
     memory: int = 0
-
-
-def widest(pattern: Pattern) -> float:
-    """Diameter [um] of a footprint that touches ``HELD`` pieces on average, where they lie evenly."""
-    table, steps = pattern.table, pattern.repeats
-    wide = float((table["high"] - table["low"])[:, 0].mean())
-    if len(steps):
-        apart = np.abs((steps[:, :2] * table["across"]).sum(1))
-        return max(HELD / float((1.0 / apart).sum()), 2.0 * wide)
-    strips = pattern.strips()
-    low, high = box(strips)
-    length, width = 2.0 * strips["half"].T
-    # sum of (l + d) (w + d) = held area, solved for d
-    b, c = float(np.sum(length + width)), float(np.sum(length * width)) - HELD * float(np.prod(high - low))
-    return max((-b + math.sqrt(max(b * b - 4.0 * len(strips) * c, 0.0))) / (2.0 * len(strips)), 2.0 * wide)
 
 
 def _base(own: Any) -> Base:
@@ -113,7 +96,7 @@ class _Joined:
         r.start, r.first_step = self.count, len(self.steps)
         self.steps += pattern.repeats.tolist()
         r.first, r.handover = self.cells, int(plan.handover) + int(plan.waved)
-        r.smooth, r.most = plan.smooth, wp.float64(widest(pattern))
+        r.smooth, r.most = plan.smooth, wp.float64(pattern.widest(HELD))
         self.tables.append(table)
         self.vertices.append(vertices)
         self.starts.append(starts + self.listed)

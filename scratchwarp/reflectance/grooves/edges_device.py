@@ -161,6 +161,23 @@ def wall_meets(
 
 
 @wp.func
+def turns(
+    grooves: GrooveSet, piece: Piece, facet: Height, line: Line, start: wp.float64, stop: wp.float64,
+    events: wp.array(dtype=wp.float64), found: int,
+) -> int:  # fmt: skip
+    """Gather where a facet goes over to that of the next stretch of its groove."""
+    n = int(found)
+    for end in range(2):
+        if (piece.caps >> (2 + end)) & 1 == 1:
+            m = wp.where(end == 0, piece.end0, piece.end1)
+            reach = wp.where(end == 0, piece.reach0, piece.reach1) + wp.dot(m, piece.origin)
+            b = meet(facet, wall_height(m, reach, line, grooves.bottom, grooves.top), start, stop)
+            if b < stop:
+                n = insert(events, n, b)
+    return n
+
+
+@wp.func
 def gather_edges(
     grooves: GrooveSet, ids: wp.array(dtype=int), count: int, line: Line, start: wp.float64, stop: wp.float64,
     events: wp.array(dtype=wp.float64),
@@ -197,6 +214,8 @@ def gather_edges(
                     n = insert(events, n, b)
                 if j < piece.first + piece.count - 1:
                     own = facet_height(grooves, piece, j, line)
+                    if piece.caps > 3:
+                        n = turns(grooves, piece, own, line, start, stop, events, n)
                     if wp.max(own.low, start) < wp.min(own.high, stop):
                         for c in range(a + 1, count):
                             other = piece_at(grooves, ids[c])

@@ -9,7 +9,7 @@ import numpy as np
 import warp as wp
 from numpy.typing import ArrayLike
 
-from ...scratches.grid import StripGrid, build, strip_table
+from ...scratches.grid import StripGrid, box, build, strip_table
 from ..vectors import numbers
 from .section import closed_section, height_at, section_points
 from .solid_device import GrooveSet, Piece, Taper
@@ -189,8 +189,9 @@ class Pattern:
                     normal, cap = sign * (along + neighbour) / np.linalg.norm(along + neighbour), 0
                 elif neighbour is None and self.ends == "mitre":
                     cap = int(not self._goes_on(section))
-                if groove.scales is not None:
-                    cap = 1  # facets turn there, and beyond a corner the two profiles do not quite agree
+                if groove.scales is not None and neighbour is not None:
+                    # facets turn there, and beyond a corner the two profiles do not quite agree
+                    cap = 4 if turn_is_straight(*((neighbour, along) if end == 0 else (along, neighbour))) else 1
                 piece |= {f"end{end}": normal, f"reach{end}": float((point - p[k]) @ normal)}
                 piece["caps"] += cap << end
             if groove.scales is not None:
@@ -237,7 +238,24 @@ class Pattern:
     @cached_property
     def grid(self) -> StripGrid:
         """The uniform grid in which the pieces near a footprint are looked up."""
-        return build(self.strips() if not len(self.repeats) else self.strips()[:0])
+        if len(self.repeats):
+            return build(self.strips()[:0], cell=self.widest(6.0))
+        return build(self.strips())
+
+    def widest(self, held: float) -> float:
+        """Diameter of a footprint that touches ``held`` pieces on average, were they spread evenly."""
+        table, steps = self.table, self.repeats
+        wide = float((table["high"] - table["low"])[:, 0].mean())
+        if len(steps):
+            apart = np.abs((steps[:, :2] * table["across"]).sum(1))
+            return max(held / float((1.0 / apart).sum()), 2.0 * wide)
+        strips = self.strips()
+        low, high = box(strips)
+        length, width = 2.0 * strips["half"].T
+        # sum of (l + d) (w + d) = held area, solved for d
+        b, c = float(np.sum(length + width)), float(np.sum(length * width)) - held * float(np.prod(high - low))
+        found = (-b + float(np.sqrt(max(b * b - 4.0 * len(strips) * c, 0.0)))) / (2.0 * len(strips))
+        return max(found, 2.0 * wide)
 
     @staticmethod
     def _goes_on(section: np.ndarray) -> bool:

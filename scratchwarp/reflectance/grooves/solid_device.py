@@ -18,7 +18,7 @@ class Piece:
 
     A point at ``r`` from ``origin`` has profile x = dot(r, across); it belongs to the stretch where dot(r, end0) <=
     reach0 and dot(r, end1) <= reach1 (unit normals outwards). ``caps``: 1 where a wall may stand at the first end,
-    plus 2 where one may at the other.
+    plus 2 where one may at the other; 4 and 8 where facets turn there.
     ``first``, ``count``: its vertices. ``low``, ``high``: smallest and largest x and z of the profile. ``partner``: the
     other piece of a mitred end, or -1. ``path``: the groove it belongs to. ``taper``: the ``Taper`` of a stretch whose
     profile grows or shrinks, or -1; ``low`` and ``high`` then hold all along it.

@@ -7,7 +7,7 @@ import numpy as np
 
 _STRAIGHT = 1e-12  # sine of the largest turn at a vertex that is none
 
-_TWIST = 0.05  # change of the angle of scales, arctan(z / x), along one stretch
+_TWIST = 0.15  # change of the angle of scales, arctan(z / x), along one stretch
 
 
 @dataclass(frozen=True, eq=False)

@@ -64,7 +64,7 @@ def test_scales_of_one_change_nothing(profile):
 def test_nothing_is_lost():
     """Every part of every footprint shows a surface, round corners and where grooves of all sizes cross."""
     rng = np.random.default_rng(1)
-    paths = [np.cumsum(rng.uniform(-1, 1, (6, 2)), axis=0) for _ in range(3)]
-    g = grooves.Pattern(paths, V, scales=[rng.uniform(0.0, 1.3, (6, 2)) for _ in paths])
-    _, found = means(g, *stacked(60, most=70.0), grooves.Diffuse(1.0), slices=31)
+    paths = [np.cumsum(rng.uniform(-1, 1, (4, 2)), axis=0) for _ in range(3)]
+    g = grooves.Pattern(paths, V, scales=[rng.uniform(0.5, 1.3, (4, 2)) for _ in paths])
+    _, found = means(g, *stacked(20, most=70.0), grooves.Diffuse(1.0), slices=7)
     np.testing.assert_allclose(found, 1.0, atol=1e-9)
