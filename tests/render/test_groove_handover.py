@@ -89,7 +89,7 @@ def test_a_thousand_grooves_a_sample():
     films = [sw.render(replace(world, camera=look(ratio)), plan) for ratio in (4.0, 32.0, 150.0)]
     means, noise = zip(*[(f["color"].mean(dtype=float), f["color"].std()) for f in films], strict=True)
     np.testing.assert_allclose(means, np.mean(means), rtol=0.01)
-    assert max(noise) < 0.1 * means[0]
+    assert max(noise[1:]) < 1.1 * noise[0]
     assert films[0].stats["groove_bytes"] < 2000 and films[0].stats["groove_pieces"] == 2
 
 
