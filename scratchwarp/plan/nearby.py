@@ -58,12 +58,24 @@ def nearest(scene: Scene, settings: Settings, size: tuple[int, int], number: int
         area = 0.5 * float(np.linalg.norm(np.cross(*np.moveaxis(np.diff(corners, axis=1), 1, 0)), axis=-1).sum())
         if number_of(layer, scene, area) > MOST:
             return math.inf
-        low, high = corners.min((0, 1)), corners.max((0, 1))
-        away = 1.0
-        if camera.projection != "orthographic":
-            away = float(np.linalg.norm(np.maximum(np.maximum(low - eye, eye - high), 0.0)))
+        away = 1.0 if camera.projection == "orthographic" else distance(eye, corners)
         width = _width(layer, scene) * (1.0 if layer.space == "surface" else 1e6 * math.sqrt(max(area, 0.0)))
         least = min(least, 1.128e6 * pixel * away / max(width, 1e-300))
+    return least
+
+
+def distance(eye: np.ndarray, corners: np.ndarray) -> float:
+    """Least distance of a point to triangles [n, 3, 3]."""
+    edges = np.roll(corners, -1, axis=1) - corners
+    to = eye - corners
+    t = np.clip((to * edges).sum(-1) / np.maximum((edges * edges).sum(-1), 1e-300), 0.0, 1.0)
+    least = float(np.linalg.norm(to - t[..., None] * edges, axis=-1).min())
+    normal = np.cross(edges[:, 0], edges[:, 1])
+    sides = (np.cross(edges, to) * normal[:, None]).sum(-1)
+    over = (sides >= 0.0).all(1) & (normal != 0.0).any(1)
+    if over.any():
+        height = np.abs((to[over, 0] * normal[over]).sum(-1)) / np.linalg.norm(normal[over], axis=-1)
+        least = min(least, float(height.min()))
     return least
 
 

@@ -30,7 +30,7 @@ EVERYTHING = {
     if name.split(".")[0] in ("lights", "base", "scratches", "shadows", "lens", "indirect")
     and name not in ("lights.multipliers", "scratches.curves", "scratches.sumCoverage", "scratches.stencil")
     and name not in RESPONDING
-} | {"lights.closedForm": False}
+} | {"lights.closedForm": False, "grooves.handover": False}
 
 
 def shoot(world, effects=None, **settings):

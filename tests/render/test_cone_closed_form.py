@@ -102,7 +102,8 @@ def random_scene(seed):
         ScratchSurface("conductor", metal="gold"),
         ScratchSurface("dielectric", ior=1.5),
     )[seed % 3]
-    layer = {"distribution": "linear", "width": 20.0, "pitch": 20.0, "depth": 20 * rng.uniform(0.1, 0.5)}
+    depth = 20 * rng.uniform(0.1, 0.5)
+    layer = {"model": "table", "distribution": "linear", "width": 20.0, "pitch": 20.0, "depth": depth}
     material = scenes.scratched(
         base,
         profile=Profile(path="/mat/p", shape=shape),

@@ -130,7 +130,7 @@ def shoot(light, shape, quad=None, blocker=None, effects=None, spp=1024, **field
     cam = Camera(
         path="/cam", transform=view, projection="orthographic", horizontal_aperture=1e-5, vertical_aperture=1e-5
     )
-    mirror = {"distribution": "linear", "width": 20.0, "pitch": 20.0, "depth": 20 * PROFILES[shape]}
+    mirror = {"model": "table", "distribution": "linear", "width": 20.0, "pitch": 20.0, "depth": 20 * PROFILES[shape]}
     profile = sw.scene.Profile(path="/mat/p", shape=shape)
     materials = [scenes.scratched(profile=profile, **mirror), Material("/black", PreviewSurface((0, 0, 0)))]
     meshes, placed = [scenes.plane(0.1)], [Instance("/plane", 0, np.eye(4), (0,))]
