@@ -145,6 +145,7 @@ PLATE = ((-1, 3, -6), (1, 3, -6), (0, 3, -4))
 TILTED = ScratchSurface(roughness=0.3, anisotropy=0.8)
 STRAIGHT = ScratchSurface(roughness=0.3)
 HERE = {"distribution": "linear"}
+WAVY = {"distribution": "crosshatch", "width": 1e5, "depth": 2e4, "pitch": 3e5, "width_variation": 0.3}
 ON = "forced on"
 EXTENT = [LAMP]
 SCRATCHED = world(scratched())
@@ -204,6 +205,7 @@ FIELDS = {
     "grooves.interreflection": "groove_bounces",
     "grooves.transmission": "groove_glass",
     "grooves.handover": "grooves groove_bounces groove_handover",
+    "grooves.tapers": "groove_tapers",
     "base.preview": "preview",
     "base.measured": "measured",
     "base.direction": "directed",
@@ -291,6 +293,7 @@ CASES: dict[str, Case] = {
         where="",
     ),
     "grooves.handover": force("grooves.handover", world(scratched(**HERE), [SUN]), grows=True),
+    "grooves.tapers": Case(grooved(variation_length=1e6, **WAVY), grooved(**WAVY), grows=True),
     "base.preview": Case(
         world(right=Material("/other", STRAIGHT)),
         world(Material("/mat", STRAIGHT), right=Material("/other", STRAIGHT)),

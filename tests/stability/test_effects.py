@@ -40,7 +40,9 @@ def allocated(value, seen=None):
 
 
 def planned(scene, extra):
-    plan = sw.make_plan(scene, sw.Settings(**{**SETTINGS, **extra}))
+    # these scenes are near enough for what is seen as a table to be laid out
+    effects = {"grooves.handover": False, **extra.get("effects", {})}
+    plan = sw.make_plan(scene, sw.Settings(**{**SETTINGS, **extra, "effects": effects}))
     tables, simulated = simulate_tables(plan, 1)
     launched = []
     launch = wp.launch
