@@ -39,7 +39,7 @@ def vinyls(path: Path | str, detail: float = 1.0) -> Path:
         elif name == "second":
             track(pressed, "track", usd.profile(pressed, "cut", shape="points", points=saw), 1, 0, 260.0)
         else:
-            track(pressed, "round", usd.profile(pressed, "roundCut", shape="round"), 3, 0, 300.0)
+            track(pressed, "round", usd.round_in_facets(pressed, "roundCut"), 3, 0, 300.0)
             track(pressed, "saw", usd.profile(pressed, "sawCut", shape="points", points=saw), 3, 1, 220.0)
             track(pressed, "step", usd.profile(pressed, "stepCut", shape="points", points=step), 3, 2, 320.0)
         usd.mesh(stage, f"{name}Track", ring(*RECORD[2:4], around, 3, RECORD[-1]), pressed, (at, 0.0, 0.0))
@@ -69,7 +69,7 @@ def track(owner: UsdShade.Material, name: str, cut: Sdf.Path, every: int, which:
     """Circles ``TRACK`` apart, or every so many of them, beginning with number ``which``."""
     usd.layer(
         owner, name, cut, model="groove", distribution="concentric", width=0.94 * TRACK, depth=depth,
-        pitch=every * TRACK, offset=(-which / every, 0.0),
+        pitch=every * TRACK, offset=(0.0, -which / every),
     )  # fmt: skip
 
 
@@ -134,7 +134,7 @@ def column(path: Path | str, detail: float = 1.0) -> Path:
     u = (np.arange(FLUTES) + 0.5) / FLUTES
     ends = [(0.05, low - 0.05), (high + 0.05, top - 0.05)]
     flutes = [np.array([(x, a, 0.0), (x, b, 0.0)]) for a, b in ends for x in u]
-    hollow = usd.profile(stone, "hollow", shape="round")
+    hollow = usd.round_in_facets(stone, "hollow")
     wide = 0.72 * AROUND / FLUTES * 1e4
     _cut(stage, stone, "flutes", hollow, flutes, wide, 0.26 * wide)
     bead = usd.profile(stone, "bead", shape="points", points=BEAD)

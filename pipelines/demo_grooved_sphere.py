@@ -25,7 +25,7 @@ def grooved_sphere(path: Path | str, detail: float = 1.0) -> Path:
     lines = paths(stage)
     glass = usd.material(stage, "glass", diffuseColor=(0.0, 0.0, 0.0), roughness=0.02, ior=1.5, opacity=0.0)
     for name, owner, x in (("metal", metal(stage, "copper", "copper", 0.12), -5.9), ("glass", glass, 5.9)):
-        cut = usd.profile(owner, "cut", shape="round")
+        cut = usd.round_in_facets(owner, "cut")
         usd.layer(
             owner, "grooves", cut, lines, model="groove", distribution="curves", width=GROOVE, depth=0.3 * GROOVE
         )

@@ -126,6 +126,13 @@ def profile(owner: UsdShade.Material, name: str, **values: Any) -> Sdf.Path:
     return prim.GetPath()
 
 
+def round_in_facets(owner: UsdShade.Material, name: str, facets: int = 8) -> Sdf.Path:
+    """A round ScratchProfile of so many flat facets: each is looked at on its own where grooves cross."""
+    turn = np.linspace(0.0, np.pi, facets + 1)
+    points = [(float(0.5 - 0.5 * np.cos(t)), -float(np.sin(t))) for t in turn[1:-1]]
+    return profile(owner, name, shape="points", points=[(0.0, 0.0), *points, (1.0, 0.0)])
+
+
 def layer(
     owner: UsdShade.Material, name: str, profile: Sdf.Path | None = None, curves: Sdf.Path | None = None, **values: Any
 ) -> None:
