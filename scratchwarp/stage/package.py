@@ -13,7 +13,7 @@ def check_package(path: str | Path) -> None:
         with zipfile.ZipFile(path) as archive:
             found = archive.infolist()
     except (zipfile.BadZipFile, ValueError, NotImplementedError) as error:
-        raise StageError(f"{path}: is no usdz package that can be read ({error})") from None
+        raise StageError(f"{path}: is no USD package that can be read ({error})") from None
     held = Path(path).stat().st_size
     for entry in found:
         where = PurePosixPath(entry.filename)

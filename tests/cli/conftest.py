@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import scratchwarp as sw
+from scratchwarp.plan import cost
 from scratchwarp.scene import RenderOptions
 
 
@@ -26,7 +27,10 @@ class Renderer:
         self.settings.append(settings)
         effect = SimpleNamespace(enabled=False, reason="nothing can occlude", prims=("/World/Ball",))
         return SimpleNamespace(
-            warnings=(), effects={"shadows": effect}, explain=lambda: "shadows off nothing can occlude"
+            warnings=(),
+            effects={"shadows": effect},
+            explain=lambda: "shadows off nothing can occlude",
+            settings=settings,
         )
 
     def render(self, scene, plan, progress=None, **how):
@@ -35,8 +39,8 @@ class Renderer:
         self.during_render()
         aovs = {"color": np.ones((2, 3, 3), np.float32), "alpha": np.ones((2, 3), np.float32)}
         aovs["depth"] = np.ones((2, 3), np.float32)
-        stats = {"rays": np.int64(6)}
-        return SimpleNamespace(aovs=aovs, metadata={}, crop=None, full_size=(3, 2), stats=stats, warnings=("dim",))
+        stats = {"rays": np.int64(6), "error": 0.008, "halving": 2.5}
+        return SimpleNamespace(aovs=aovs, metadata={"scratchwarp:spp": 16}, crop=None, full_size=(3, 2), stats=stats, warnings=("dim",))
 
 
 @pytest.fixture
@@ -44,4 +48,6 @@ def renderer(monkeypatch):
     fake = Renderer()
     for name in ("read", "make_plan", "render"):
         monkeypatch.setattr(sw, name, getattr(fake, name))
+    priced = SimpleNamespace(record=lambda: {"trace": 1.0}, text=lambda stats: "trace 1 s")
+    monkeypatch.setattr(cost, "forecast", lambda scene, plan: priced)
     return fake

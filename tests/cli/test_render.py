@@ -68,7 +68,7 @@ def test_json_is_one_object_an_image_and_nothing_else(renderer, tmp_path, capsys
     renderer.warnings = ("w",)
     assert status("render", "a.usda", tmp_path / "a.exr", "--json") == 0
     row = json.loads(capsys.readouterr().out)
-    assert row.pop("stats")["rays"] == 6
+    assert row.pop("stats")["rays"] == 6 and row.pop("predicted") == {"trace": 1.0}
     assert row == {"image": str(tmp_path / "a.exr"), "frame": None, "warnings": ["w", "dim"]}
 
 

@@ -158,7 +158,7 @@ def test_a_package_that_claims_more_than_it_holds(tmp_path):
     with pytest.raises(sw.scene.StageError, match="claim 1879048202 bytes"):
         sw.read(path)
     path.write_bytes(b"no zip at all")
-    with pytest.raises(sw.scene.StageError, match="is no usdz package"):
+    with pytest.raises(sw.scene.StageError, match="is no USD package"):
         sw.read(path)
 
 
