@@ -40,7 +40,10 @@ class Renderer:
         aovs = {"color": np.ones((2, 3, 3), np.float32), "alpha": np.ones((2, 3), np.float32)}
         aovs["depth"] = np.ones((2, 3), np.float32)
         stats = {"rays": np.int64(6), "error": 0.008, "halving": 2.5}
-        return SimpleNamespace(aovs=aovs, metadata={"scratchwarp:spp": 16}, crop=None, full_size=(3, 2), stats=stats, warnings=("dim",))
+        metadata = {"scratchwarp:spp": 16}
+        return SimpleNamespace(
+            aovs=aovs, metadata=metadata, crop=None, full_size=(3, 2), stats=stats, warnings=("dim",)
+        )
 
 
 @pytest.fixture
