@@ -9,7 +9,10 @@ from pathlib import Path
 
 import pytest
 
+import scratchwarp
+
 ROOT = Path(__file__).resolve().parents[2]
+HOME = Path(scratchwarp.__file__).parents[1]  # of the package under test, which may be an installed one
 SHARED = Path(os.environ.get("SCRATCHWARP_SHARED", ROOT.parent / "shared")) / "data" / "usd"
 LOOK = (
     "import sys; from pxr import Plug, Usd, UsdGeom, UsdShade\n"
@@ -37,7 +40,7 @@ def test_an_asset_goes_the_whole_way(name, tmp_path):
     data = tmp_path / "data"
     shutil.copytree(SHARED / "Teapot", data / "Teapot")
     plain = {k: v for k, v in os.environ.items() if k != "PXR_PLUGINPATH_NAME"}
-    environment = {**plain, "SCRATCHWARP": f"{sys.executable} -m scratchwarp", "PYTHONPATH": str(ROOT)}
+    environment = {**plain, "SCRATCHWARP": f"{sys.executable} -m scratchwarp", "PYTHONPATH": str(HOME)}
     command = ["sh", "-c", shorter, "walk", str(data), str(tmp_path / "out"), "16", "1", "16"]
     done = subprocess.run(command, env=environment, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
