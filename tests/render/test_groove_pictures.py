@@ -1,8 +1,9 @@
 """Pictures of grooves against Mitsuba 3's of their true geometry, with all inter-reflection.
 
-Tolerances: 0.5 % of the mean, most of which is what Mitsuba's GGX, its masking and its shadowing independent, sends less
-from rough facet to rough facet (0.3 to 0.4 % at this roughness of 0.3); the RMS of pixels at most twice Mitsuba's noise. The triangles traced by ourselves, with the same facets: 0.3 %, all of it noise (0.01 % with
-16 times the samples). One kernel for grooves, one for triangles.
+Tolerances: 0.5 % of the mean, most of which is what Mitsuba's GGX, its masking and its shadowing independent, sends
+less from rough facet to rough facet (0.3 to 0.4 % at this roughness of 0.3); the RMS of pixels at most twice Mitsuba's
+noise. The triangles traced by ourselves, with the same facets: 0.3 %, all of it noise (0.01 % with 16 times the
+samples). One kernel for grooves, one for triangles.
 """
 
 from dataclasses import replace
