@@ -101,6 +101,9 @@ def scratched(surface: Any = ROUGH, **fields: Any) -> Material:
     return scenes.scratched(surface, **{**DEEP, **fields})
 
 
+SAMPLED = Wave(samples=4, sampling="uniform")  # every wavelength by itself, no table
+
+
 def waves(wave: Wave | None = None, lights: Any = None, **fields: Any) -> Scene:
     """Scratches that diffract on the left ball."""
     layered = scenes.scratched(ROUGH, **{**FINE, "distribution": "random", **fields})
@@ -191,11 +194,11 @@ FIELDS = {
     "diffraction.orientation": "glint_orientations",
     "diffraction.pairs": "glint_pairs",
     "diffraction.pointFootprint": "glint_footprint",
-    "diffraction.areaLights": "lights glint_areas glint_lookup glint_fringes",
+    "diffraction.areaLights": "lights glint_areas",
     "diffraction.lookup": "glint_lookup",
     "diffraction.distantLookup": "glint_fringes",
-    "diffraction.outlines": "glint_numeric glint_fringes",
-    "diffraction.angles": "glint_numeric glint_fringes",
+    "diffraction.outlines": "glint_numeric",
+    "diffraction.angles": "glint_numeric",
     "diffraction.exactFootprint": "glint_footprint",
     "diffraction.paperFootprint": "glint_footprint",
     "diffraction.closedForm": "glint_method",
@@ -273,12 +276,12 @@ CASES: dict[str, Case] = {
     "diffraction.orientation": Case(waves(orientation_primvar="flow", **HERE), waves(**HERE), grows=None),
     "diffraction.pairs": Case(waves(Wave(samples=4, summation="coherent")), waves(), grows=None),
     "diffraction.pointFootprint": force("diffraction.pointFootprint", waves(), grows=None),
-    # without them there is the table of lights without extent
-    "diffraction.areaLights": Case(waves(lights=EXTENT), waves(), grows=None, where="light"),
-    "diffraction.lookup": Case(waves(lights=EXTENT), waves(Wave(samples=4, sampling="uniform"), EXTENT), grows=True),
-    "diffraction.distantLookup": Case(waves(), waves(Wave(samples=4, sampling="uniform")), grows=True),
-    "diffraction.outlines": Case(waves(profile=VEE), waves(), grows=None),
-    "diffraction.angles": Case(waves(Wave(samples=4, phase="angleDependent")), waves(), grows=None),
+    # wavelengths are sampled on both sides, so that none has the table of lights without extent
+    "diffraction.areaLights": Case(waves(SAMPLED, EXTENT), waves(SAMPLED), where="light"),
+    "diffraction.lookup": Case(waves(lights=EXTENT), waves(SAMPLED, EXTENT), grows=True),
+    "diffraction.distantLookup": Case(waves(), waves(SAMPLED), grows=True),
+    "diffraction.outlines": Case(waves(SAMPLED, profile=VEE), waves(SAMPLED), grows=True),
+    "diffraction.angles": Case(waves(replace(SAMPLED, phase="angleDependent")), waves(SAMPLED)),
     "diffraction.exactFootprint": force("diffraction.exactFootprint", waves(), grows=True),
     "diffraction.paperFootprint": force("diffraction.paperFootprint", waves(), grows=True),
     "diffraction.closedForm": force("diffraction.closedForm", waves(lights=EXTENT)),
