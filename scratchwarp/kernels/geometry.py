@@ -55,7 +55,7 @@ def _gradients(world: Array, uv: Array) -> tuple[Array, Array]:
 def _smooth_tangents(triangles: Array, uv: Array, dpdu: Array, area: Array) -> Array:
     """Corner tangents: dP/du averaged over the triangles that share the corner's point and its uv, by area."""
     # one 64-bit mix of point and rounded uv a corner: sorting numbers is ten times faster than sorting rows
-    u, v = (uv.reshape(-1, 2) * 1e7).round().astype(np.int64).view(np.uint64).T
+    u, v = np.clip((uv.reshape(-1, 2) * 1e7).round(), -9e18, 9e18).astype(np.int64).view(np.uint64).T
     keys = triangles.ravel().astype(np.uint64) * np.uint64(0x9E3779B97F4A7C15)
     keys = (keys ^ u * np.uint64(0xC2B2AE3D27D4EB4F)) + v * np.uint64(0x165667B19E3779F9)
     _, group = np.unique(keys, return_inverse=True)

@@ -89,8 +89,12 @@ class Checkpoint:
         body = b"".join(np.ascontiguousarray(sums[name]).tobytes() for name in self._kinds)
         self._file.seek(self._place(number, int(self._next[number])))
         record = _SLOT.pack(zlib.crc32(body, samples & 0xFFFFFFFF), samples) + body
-        if self._file.write(record) < len(record):
-            raise OSError(f"{self.path}: cannot be written to its end; is the disk full?")
+        rest = memoryview(record)
+        while len(rest):  # a signal may cut a write short
+            written = self._file.write(rest)
+            if not written:
+                raise OSError(f"{self.path}: cannot be written to its end; is the disk full?")
+            rest = rest[written:]
         self.samples[number] = samples
         self._next[number] = 1 - self._next[number]
 

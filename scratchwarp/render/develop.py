@@ -7,7 +7,7 @@ import numpy as np
 
 from .. import __version__
 from ..plan import EffectPlan
-from ..scene import Scene
+from ..scene import Camera, Scene
 
 
 def aovs(sums: Mapping[str, np.ndarray], scene: Scene, samples: int | np.ndarray) -> dict[str, np.ndarray]:
@@ -70,6 +70,16 @@ def in_gamut(color: np.ndarray) -> np.ndarray:
     return np.where(outside[..., None], mapped, color).astype(np.float32)
 
 
+def _depths(camera: Camera) -> tuple[float, float]:
+    """Clipping distances [m] that a matrix of depths can be made of: finite, the near one above 0, the far one beyond.
+
+    A camera without a near plane has one at a millimetre, nearer where its far plane is (scenes of any size).
+    """
+    far = min(camera.far, 1e10)
+    near = min(camera.near, 1e10) if camera.near > 0.0 else min(1e-3, 1e-3 * max(far, 1e-12))
+    return near, far if far > near else 2.0 * near
+
+
 def metadata(scene: Scene, plan: EffectPlan, digest: str, wall: float, cpu: float) -> dict[str, Any]:
     """Header entries: software, settings hash, samples, seed, seconds, camera matrices (row vectors)."""
     camera, (width, height) = scene.camera, plan.size
@@ -78,8 +88,7 @@ def metadata(scene: Scene, plan: EffectPlan, digest: str, wall: float, cpu: floa
     shift[:3, 3] = -scene.origin
     world_to_camera = to_camera @ shift
     left, right, bottom, top = camera.window(width, height, scene.options.conform, scene.options.pixel_aspect)
-    near = max(camera.near, 1e-3)
-    far = min(camera.far, 1e10)
+    near, far = _depths(camera)
     ndc = np.zeros((4, 4))
     ndc[0, 0], ndc[1, 1] = 2.0 / (right - left), 2.0 / (top - bottom)
     if camera.projection == "perspective":

@@ -8,8 +8,10 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
-PATIENCE = 1.5
+PATIENCE = 1.0
 """Seconds between a signal that ends a render and the end of the process, whatever it is at."""
+_WORDS = 0.4
+"""Seconds that the last words of a process may take: who reads them may have stopped reading."""
 
 
 class Stopped(KeyboardInterrupt):
@@ -39,11 +41,12 @@ def signals(late: Callable[[], None]) -> Iterator[Control]:
         return
     ends = {signal.SIGINT, signal.SIGTERM}
     shows = {signal.SIGUSR1} if hasattr(signal, "SIGUSR1") else set()
-    over, told = threading.Event(), threading.Event()
+    over = threading.Event()
+    told: list[int] = []  # no event: a second signal may interrupt the handler of the first while it holds a lock
 
     def interrupt(number: int, frame: object) -> None:
-        if not told.is_set():  # a second one does not disturb what the first one ends
-            told.set()
+        told.append(number)
+        if len(told) == 1:  # a second one does not disturb what the first one ends
             raise KeyboardInterrupt
 
     def watch() -> None:
@@ -55,7 +58,9 @@ def signals(late: Callable[[], None]) -> Iterator[Control]:
                 control.stop.set()
                 if over.wait(PATIENCE):
                     return
-                late()
+                words = threading.Thread(target=late, name="last words", daemon=True)
+                words.start()
+                words.join(_WORDS)
                 os._exit(130)
 
     reader, writer = socket.socketpair()
@@ -63,6 +68,8 @@ def signals(late: Callable[[], None]) -> Iterator[Control]:
     before = {number: signal.signal(number, interrupt) for number in ends}
     # the watcher does what there is to do: a handler that waits for a lock may wait for the line that it interrupts
     before |= {number: signal.signal(number, lambda *_: None) for number in shows}
+    for number in shows:  # nor is a file that native code reads or writes cut off
+        signal.siginterrupt(number, False)
     wakeup = signal.set_wakeup_fd(writer.fileno(), warn_on_full_buffer=False)
     watcher = threading.Thread(target=watch, name="signals", daemon=True)
     watcher.start()

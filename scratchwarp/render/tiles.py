@@ -56,8 +56,14 @@ def run(
     threads = [threading.Thread(target=pull, args=(work,), daemon=True) for work in workers[1:]]
     for thread in threads:
         thread.start()
-    pull(workers[0])
-    for thread in threads:
-        thread.join()
+    try:
+        pull(workers[0])
+        for thread in threads:
+            thread.join()
+    except BaseException:  # raised by a signal while this thread waits: no other may still run while the process ends
+        stop.set()
+        for thread in threads:
+            thread.join()
+        raise
     if failures:
         raise failures[0]

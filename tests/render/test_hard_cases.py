@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import scratchwarp as sw
+from scratchwarp.render.develop import metadata
 from scratchwarp.scene import (
     CylinderLight,
     DiskLight,
@@ -291,3 +292,18 @@ def test_one_pixel():
     film = finite(at(scenes.sphere()), width=1, height=1, spp=1, filter_width=0.0)
     assert film["color"].shape == (1, 1, 3)
     assert sw.make_plan(at(scenes.sphere()), sw.Settings(width=3)).size == (3, 3)
+
+
+@pytest.mark.parametrize("projection", ["perspective", "orthographic"])
+@pytest.mark.parametrize(
+    ("near", "far"), [(0.0, np.inf), (1e-7, 1e-3), (1.0, 1.0), (5.0, 2.0), (0.0, 0.0), (3e38, 3e38), (1e-30, 1e-20)]
+)
+def test_headers_of_any_clipping_distances(projection, near, far):
+    """The matrix of a header exists and can be inverted; what lies at the near plane has depth -1, at the far one 1."""
+    cam = replace(scenes.camera(), near=near, far=far, projection=projection)
+    world = at(scenes.sphere(), cam=cam)
+    matrix = np.reshape(metadata(world, sw.make_plan(world), "", 0.0, 0.0)["worldToNDC"], (4, 4))
+    assert np.isfinite(matrix).all()
+    if 0.0 < near < far < 1e9:
+        ends = np.array([[0, 0, -near, 1], [0, 0, -far, 1]]) @ matrix
+        np.testing.assert_allclose(ends[:, 2] / ends[:, 3], [-1.0, 1.0], rtol=1e-6)

@@ -12,6 +12,7 @@ STAGES = 30
 ONCE = {
     4: "a scratched surface under a light with a specular multiplier did not compile",
     44: "a million grooves were laid out before they were counted",
+    310: "a camera whose far plane is a millimetre away had no matrix of depths",
 }
 _compiled: set = set()
 
