@@ -17,7 +17,6 @@ from scratchwarp import image
 from scratchwarp.cli import main
 from scratchwarp.pipelines.author_demo import author
 
-
 ASKING = """
 import os, pathlib, signal, sys, threading, time
 from scratchwarp.cli import main
