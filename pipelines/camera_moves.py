@@ -2,7 +2,8 @@
 
 import argparse
 import itertools
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, nullcontext
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -23,6 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser, frames: int) -> None:
         help="what to move about, in metres [what the middle of the picture shows]",
     )  # fmt: skip
     parser.add_argument("--sheet", metavar="FILE", help="all frames in one picture, too")
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="a Dask farm: tcp://HOST:PORT, or local:N workers here")
     pictures.add_rendering(parser)
 
 
@@ -122,11 +124,17 @@ def run(options: argparse.Namespace, moves: Callable[[Any, Array, int], Iterator
     import scratchwarp as sw
     from scratchwarp import image
     from scratchwarp.frames import is_numbered, numbered
+    from scratchwarp.render.farm import workers_of
 
     if not 1 <= options.frames <= 10000:
         raise WrongUsage(f"--frames {options.frames} is not in [1, 10000]")
     if options.frames > 1 and not is_numbered(options.out):
         raise WrongUsage(f"OUT {options.out!r} is one file for {options.frames} frames; write ### in it")
+    if options.scheduler:
+        try:
+            workers_of(options.scheduler)
+        except ValueError as error:
+            raise WrongUsage(f"--scheduler {error}") from None
     names = [numbered(options.out, float(i + 1)) for i in range(options.frames)]
     for name in itertools.chain(names, [options.sheet] if options.sheet else []):
         image.check_writable(name)
@@ -134,12 +142,38 @@ def run(options: argparse.Namespace, moves: Callable[[Any, Array, int], Iterator
     scene = sw.read(options.stage, camera=options.camera)
     about = middle(scene) if options.target is None else np.asarray(options.target, np.float64) - scene.origin
     shots = []
-    for name, shot in zip(names, moves(scene, about, options.frames), strict=True):
-        film = pictures.film(shot, options, Path(name).name)
-        image.write(film, name)
-        if options.sheet:
-            shots.append(np.asarray(film["color"]))
+    with frames(options, names, moves(scene, about, options.frames)) as made:
+        for film in made:
+            if options.sheet:
+                shots.append(np.asarray(film["color"]))
     if options.sheet:
         image.write_layers({"color": pictures.grid(shots)}, options.sheet)
         names.append(options.sheet)
     return Report({"stage": options.stage, "target": (about + scene.origin).tolist(), "images": names}, tuple(names))
+
+
+@contextmanager
+def frames(options: argparse.Namespace, names: Sequence[str], scenes: Iterator[Any]) -> Iterator[Iterator[Any]]:
+    """Yield the films of ``scenes``, each written to its name, in their order; several at a time on a farm."""
+    import scratchwarp as sw
+    from scratchwarp import image
+    from scratchwarp.render import Farm, bars, side_by_side
+
+    with (
+        bars(options.quiet or options.json) as begin,
+        Farm(options.scheduler) if options.scheduler else nullcontext() as farm,
+    ):
+
+        def maker(name: str, scene: Any) -> Callable[[Any], Any]:
+            def make(control: Any) -> Any:
+                progress = begin(Path(name).name)
+                plan = sw.make_plan(scene, pictures.settings(options))
+                film = sw.render(scene, plan, progress=progress, farm=farm, control=control)
+                image.write(film, name)
+                progress(1, 1, "done")
+                return film
+
+            return make
+
+        makers = map(maker, names, scenes)
+        yield side_by_side(farm, makers) if farm else (make(None) for make in makers)

@@ -10,7 +10,8 @@ from . import arguments
 from .arguments import UsageError
 
 if TYPE_CHECKING:
-    from .render import Control, Film
+    from .render import Control, Farm, Film
+    from .render.progress import Progress
     from .scene import Settings
 
 
@@ -58,15 +59,11 @@ def render(
 ) -> Iterator[dict[str, Any]]:
     """Make the images and yield what there is to say of each: image, frame, warnings, stats, what was predicted.
 
-    A snapshot lies beside its image. Checkpoints of frames that are done go when all are done, so that ``--resume``
-    leaves those frames alone.
+    A farm makes several at a time. A snapshot lies beside its image. Checkpoints of frames that are done go when all
+    are done, so that ``--resume`` leaves those frames alone.
     """
-    import scratchwarp as sw
-
-    from .plan.cost import forecast
-    from .render import AOVS, Farm, bar, checkpoint
+    from .render import AOVS, Farm, bars, side_by_side
     from .render.farm import workers_of
-    from .render.target import reached
 
     told: set[str] = set()
     layers = arguments.listed(",".join(args.aov))
@@ -78,44 +75,92 @@ def render(
             workers_of(args.scheduler)
         except ValueError as error:
             raise UsageError(f"--scheduler {error}") from None
-    with Farm(args.scheduler, args.maxMemory) if args.scheduler else nullcontext() as farm:
-        for shot in asked:
-            scene = sw.read(args.stage, frame=shot.frame, **arguments.reading(args))
-            warn(scene.warnings, told, args.quiet)
-            plan = sw.make_plan(scene, settings)
-            warn(plan.warnings, told, args.quiet)
-            if args.resume and Path(shot.out).exists() and checkpoint.is_finished(shot.checkpoint or "", scene, plan):
-                warn((f"{shot.out} is done already",), told, args.quiet)
-                continue
-            asked_for, foreign = scene.options.layers(AOVS)
-            missing = [f"{args.stage}: a render var asks for {source!r}, which is no layer" for source in foreign]
-            warn(missing, told, args.quiet)
-            aovs = layers or list(asked_for) or None
 
-            def show(film: "Film", out: str = shot.out, aovs: list[str] | tuple[str, ...] | None = aovs) -> None:
-                beside = str(Path(out).with_suffix(f".snapshot{Path(out).suffix}"))
-                sw.write(film, beside, aovs=aovs, view=view)
-                if not args.quiet:
-                    say(f"snapshot {beside}")
+    with bars(args.quiet) as begin, Farm(args.scheduler, args.maxMemory) if args.scheduler else nullcontext() as farm:
 
-            predicted = forecast(scene, plan) if args.cost or args.json else None
-            how: dict[str, Any] = {"checkpoint": shot.checkpoint, "resume": args.resume, "keep": True}
-            with bar(args.quiet, Path(shot.out).name) as progress:
-                film = sw.render(scene, plan, progress=progress, farm=farm, control=control, snapshot=show, **how)
-            warn(film.warnings, told, args.quiet)
-            sw.write(film, shot.out, aovs=aovs, view=view)
-            if shot.checkpoint and len(asked) > 1:
-                checkpoint.finish(shot.checkpoint)
-            elif shot.checkpoint:
-                Path(shot.checkpoint).unlink(missing_ok=True)
-            if plan.settings.max_error is not None and not args.quiet:
-                stats, samples = film.stats, int(film.metadata["scratchwarp:spp"])
-                say(f"{shot.out}: {reached(samples, stats['error'], stats['halving'])}")
-            if args.cost and predicted is not None and not args.json:
-                say(f"{shot.out}:\n{predicted.text(film.stats)}")
-            warnings = tuple(dict.fromkeys(scene.warnings + plan.warnings + film.warnings))
-            row = {"image": shot.out, "frame": shot.frame, "warnings": warnings, "stats": dict(film.stats)}
-            yield row | ({"predicted": predicted.record()} if predicted else {})
+        def made(shot: Shot, mine: "Control", tell: Callable[[Sequence[str]], None]) -> dict[str, Any] | None:
+            progress = begin(Path(shot.out).name)
+            row = _made(args, shot, len(asked), layers, settings, view, mine, farm, progress, say, tell)
+            if len(asked) > 1:
+                progress(1, 1, "done")
+            return row
+
+        if farm is None or len(asked) == 1:
+            for shot in asked:
+                row = made(shot, control, lambda warnings: warn(warnings, told, args.quiet))
+                if row is not None:
+                    yield row
+        else:
+
+            def maker(shot: Shot) -> Callable[["Control"], tuple[list[str], dict[str, Any] | None]]:
+                def make(mine: "Control") -> tuple[list[str], dict[str, Any] | None]:
+                    warnings: list[str] = []
+                    row = made(shot, mine, warnings.extend)
+                    return warnings, row
+
+                return make
+
+            for warnings, row in side_by_side(farm, map(maker, asked), control):
+                warn(warnings, told, args.quiet)
+                if row is not None:
+                    yield row
     for shot in asked:
         if shot.checkpoint:
             Path(shot.checkpoint).unlink(missing_ok=True)
+
+
+def _made(
+    args: argparse.Namespace,
+    shot: Shot,
+    count: int,
+    layers: Sequence[str],
+    settings: "Settings",
+    view: Any,
+    control: "Control",
+    farm: "Farm | None",
+    progress: "Progress",
+    say: Callable[[str], None],
+    tell: Callable[[Sequence[str]], None],
+) -> dict[str, Any] | None:
+    """Make one of ``count`` images, write it, and return what there is to say of it; None where it is done already.
+    ``tell`` gets its warnings."""
+    import scratchwarp as sw
+
+    from .plan.cost import forecast
+    from .render import AOVS, checkpoint
+    from .render.target import reached
+
+    scene = sw.read(args.stage, frame=shot.frame, **arguments.reading(args))
+    tell(scene.warnings)
+    plan = sw.make_plan(scene, settings)
+    tell(plan.warnings)
+    if args.resume and Path(shot.out).exists() and checkpoint.is_finished(shot.checkpoint or "", scene, plan):
+        tell((f"{shot.out} is done already",))
+        return None
+    asked_for, foreign = scene.options.layers(AOVS)
+    tell([f"{args.stage}: a render var asks for {source!r}, which is no layer" for source in foreign])
+    aovs = list(layers) or list(asked_for) or None
+
+    def show(film: "Film") -> None:
+        beside = str(Path(shot.out).with_suffix(f".snapshot{Path(shot.out).suffix}"))
+        sw.write(film, beside, aovs=aovs, view=view)
+        if not args.quiet:
+            say(f"snapshot {beside}")
+
+    predicted = forecast(scene, plan) if args.cost or args.json else None
+    how: dict[str, Any] = {"checkpoint": shot.checkpoint, "resume": args.resume, "keep": True}
+    film = sw.render(scene, plan, progress=progress, farm=farm, control=control, snapshot=show, **how)
+    tell(film.warnings)
+    sw.write(film, shot.out, aovs=aovs, view=view)
+    if shot.checkpoint and count > 1:
+        checkpoint.finish(shot.checkpoint)
+    elif shot.checkpoint:
+        Path(shot.checkpoint).unlink(missing_ok=True)
+    if plan.settings.max_error is not None and not args.quiet:
+        stats, samples = film.stats, int(film.metadata["scratchwarp:spp"])
+        say(f"{shot.out}: {reached(samples, stats['error'], stats['halving'])}")
+    if args.cost and predicted is not None and not args.json:
+        say(f"{shot.out}:\n{predicted.text(film.stats)}")
+    warnings = tuple(dict.fromkeys(scene.warnings + plan.warnings + film.warnings))
+    row = {"image": shot.out, "frame": shot.frame, "warnings": warnings, "stats": dict(film.stats)}
+    return row | ({"predicted": predicted.record()} if predicted else {})

@@ -3,7 +3,8 @@
 Files:
     renderer    render(scene, plan) -> Film
     tiles       tiles over threads
-    trace       jobs (samples of a tile), and the threads that do them; farm: workers of Dask that do; farm_worker
+    trace       jobs (samples of a tile), and the threads that do them; farm: workers of Dask that do; farm_worker,
+                farm_data; beside: images that a farm renders at a time
     shoot       one job into sums of its own; launch: one kernel over tiles of one film
     tables      the plan's tables, simulated or found
     canvas      the image while it is rendered
@@ -26,14 +27,15 @@ from typing import Any
 
 from ..plan import EffectPlan
 from ..scene import Scene
+from .beside import side_by_side
 from .farm import Farm
 from .film import AOVS, Film
 from .interrupt import Control, signals
-from .progress import bar
+from .progress import bar, bars
 from .renderer import render
 from .session import Redone, Session
 
-__all__ = ["AOVS", "Control", "Farm", "Film", "Redone", "Session", "bar", "render", "signals"]
+__all__ = ["AOVS", "Control", "Farm", "Film", "Redone", "Session", "bar", "bars", "render", "side_by_side", "signals"]
 
 
 class _Room(types.ModuleType):

@@ -1,7 +1,10 @@
 """A farm: tiles traced by the workers of Dask distributed, on this machine or on many."""
 
+import itertools
 import queue
+import threading
 import time
+import weakref
 from collections import deque
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -18,8 +21,11 @@ from .trace import Done, Job
 if TYPE_CHECKING:
     from distributed import Client
 
+    from .farm_data import Packed
+
 IN_FLIGHT = 3
-"""Tasks for each thread of a worker that are sent before results are back: this bounds memory, and hides latency."""
+"""Tasks for each thread of a worker, of all images, that are sent before results are back: this bounds memory, and
+hides latency."""
 TASK_SAMPLES = 1 << 17
 """Samples of all pixels that make a task worth its sending; tiles are sent together up to so many."""
 TASKS_A_WORKER = 12
@@ -28,6 +34,8 @@ RETRIES = 8
 """Workers that a tile may lose before it is taken for what kills them."""
 WAIT = 60.0
 """Seconds that a farm may be without a worker."""
+LOOK = 0.25
+"""Seconds between looks at whether to stop."""
 
 
 class Farm:
@@ -38,7 +46,8 @@ class Farm:
     Whoever reaches a scheduler of Dask can run code on its workers: keep it in a network that you trust, or use tls.
 
     Args:
-        memory: bytes that the workers on this machine may use together; one that takes more is started again.
+        memory: bytes that the workers on this machine may use together, and frames that are under way; a worker that
+            takes more is started again.
 
     Raises ValueError on an address that is none, ImportError without the extra ``farm``, OSError when nobody answers.
     """
@@ -47,6 +56,12 @@ class Farm:
         self.local = address.startswith("local:")
         self.address = address
         number = workers_of(address)
+        self.memory, self.largest, self.flying = memory, 0, 0
+        self._serial, self._sending = itertools.count(), threading.Lock()
+        self._sent: weakref.WeakValueDictionary[str, _Sent] = weakref.WeakValueDictionary()
+        self._latest: list[_Sent] = []
+        self._pickled: weakref.WeakKeyDictionary[Any, tuple[str, bytes]] = weakref.WeakKeyDictionary()
+        self.tables: dict[tuple[Any, ...], Table] = {}
         try:
             import dask
             import distributed
@@ -110,10 +125,48 @@ class Farm:
         control: Control,
         name: str,
     ) -> "OnFarm":
-        """The tracer of one image, whose data is sent to each worker now; ``name``: the hash of all that decides it."""
-        from .farm_worker import packed
+        """The tracer of one image, whose data is sent to each worker now; ``name``: the hash of all that decides it.
 
-        return OnFarm(self, packed(scene, plan, tables, key, device), control, name)
+        Parts that the image before it has, or one under way, are not sent again. Tiles of the first image go first.
+        """
+        from .farm_data import packed
+
+        image = packed(scene, plan, tables, key, device, self._pickled)
+        return OnFarm(self, image, control, name, next(self._serial))
+
+    def send(self, image: "Packed") -> tuple["_Sent", list["_Sent"]]:
+        """(head, parts) of an image, each at every worker."""
+        with self._sending:
+            self.largest = max(self.largest, image.size)
+            parts = []
+            for name, data in image.parts.items():
+                one = self._sent.get(name) or _Sent(self, data)
+                self._sent[name] = one
+                parts.append(one)
+            self._latest = parts  # what it had in common with the next one stays until that is sent
+        head = _Sent(self, image.head)
+        for sent in (head, *parts):
+            sent.future()
+        return head, parts
+
+    def fly(self, change: int) -> None:
+        """Count the tasks of all images that are with the workers."""
+        with self._sending:
+            self.flying += change
+
+
+class _Sent:
+    """Bytes that are at the workers; they go again where all workers that had them died."""
+
+    def __init__(self, farm: Farm, data: bytes) -> None:
+        self._farm, self._data, self._lock, self._future = farm, data, threading.Lock(), None
+
+    def future(self) -> Any:
+        """The bytes as Dask knows them."""
+        with self._lock:
+            if self._future is None or self._future.status != "finished":
+                self._future = self._farm.client.scatter(self._data, broadcast=True, hash=False)
+            return self._future
 
 
 def workers_of(address: str) -> int:
@@ -129,63 +182,74 @@ def workers_of(address: str) -> int:
 class OnFarm:
     """Tracer that sends jobs to a farm, a few more at a time than it has threads.
 
-    ``data`` goes from here to a few workers and from those to the others; where all that have it die, it goes again.
+    ``image`` goes from here to a few workers and from those to the others. Attribute sent: bytes of the image that no
+    worker had.
     """
 
-    def __init__(self, farm: Farm, data: bytes, control: Control, name: str) -> None:
+    def __init__(self, farm: Farm, image: "Packed", control: Control, name: str, serial: int = 0) -> None:
         from .farm_worker import machine
 
         self.warnings: tuple[str, ...] = ()
         self.numbers: Mapping[str, Any] = {}
         self.launches, self.cpu = 0, 0.0
-        self._farm, self._control, self._name, self._data = farm, control, name, data
-        self._scene: Any = None
+        self._farm, self._control, self._name, self._image, self._serial = farm, control, name, image, serial
+        self._sent: tuple[_Sent, list[_Sent]] | None = None
         self._machines = {machine()}
 
     def __call__(self, jobs: Sequence[Job], done: Done) -> None:
         """Trace ``jobs``; tiles of a worker that dies go to another one. Raises OSError when the farm is lost."""
         from .farm_worker import work
 
-        waiting = deque(grouped(jobs, self._farm.threads()))
+        farm = self._farm
+        waiting = deque(grouped(jobs, farm.threads()))
         ended: queue.SimpleQueue[Any] = queue.SimpleQueue()
         flying: dict[Any, tuple[Sequence[Job], int]] = {}
-        threads, looked = self._farm.threads(), time.monotonic()
+        threads, looked = farm.threads(), time.monotonic()
         seen = looked
+        if waiting and self._sent is None:
+            self._sent = farm.send(self._image)
 
         def send(group: Sequence[Job], losses: int) -> None:
-            if self._scene is None or self._scene.status != "finished":
-                self._scene = self._farm.client.scatter(self._data, broadcast=True, hash=False)
-            future = self._farm.client.submit(
-                work, self._name, self._scene, __version__, group, pure=False, priority=losses
-            )
+            assert self._sent is not None
+            head, parts = self._sent
+            args = (self._name, head.future(), list(self._image.parts), [part.future() for part in parts])
+            rank = RETRIES * -self._serial + losses  # tiles that were lost go first, then those of earlier images
+            future = farm.client.submit(work, *args, __version__, group, pure=False, priority=rank)
             flying[future] = (group, losses)
+            farm.fly(1)
             future.add_done_callback(ended.put)
 
         try:
             while waiting or flying:
-                while waiting and len(flying) < IN_FLIGHT * max(1, threads):
+                while waiting and (not flying or farm.flying < IN_FLIGHT * max(1, threads)):
                     send(waiting.popleft(), 0)
+                if not waiting:
+                    self._control.handed.set()
                 try:
-                    future = ended.get(timeout=1.0)
+                    future = ended.get(timeout=LOOK)
                 except queue.Empty:
                     future = None
                 if self._control.stop.is_set():
                     raise Stopped
                 if time.monotonic() - looked > 2.0:
-                    threads, looked = self._farm.threads(), time.monotonic()
+                    threads, looked = farm.threads(), time.monotonic()
                     seen = looked if threads else seen
                     if looked - seen > WAIT:
-                        raise OSError(f"{self._farm.address}: no worker is left after {WAIT:g} s")
+                        raise OSError(f"{farm.address}: no worker is left after {WAIT:g} s")
                 if future is None:
                     continue
                 group, losses = flying.pop(future)
-                if future.status == "finished":
-                    self._take(group, future.result(), done)
-                elif losses < RETRIES and _died(future):
+                farm.fly(-1)
+                ended_well = future.status == "finished"
+                found = self._found(future) if ended_well else None
+                if found is not None:
+                    self._take(group, found, done)
+                elif losses < RETRIES and (ended_well or _died(future)):
                     send(group, losses + 1)
                 else:
                     raise self._failure(future)
         finally:
+            farm.fly(-len(flying))
             for future in flying:
                 future.cancel()
             if not self._control.stop.is_set():
@@ -193,7 +257,17 @@ class OnFarm:
 
     def close(self) -> None:
         """Let the workers forget the image."""
-        self._scene = None
+        self._sent = None
+
+    def _found(self, future: Any) -> dict[str, Any] | None:
+        """What a task found; None where that was lost with its worker before it was fetched."""
+        from distributed import CancelledError
+
+        try:
+            found: dict[str, Any] = future.result()
+        except CancelledError:
+            return None
+        return found
 
     def _take(self, group: Sequence[Job], found: dict[str, Any], done: Done) -> None:
         self.launches += found["launches"]

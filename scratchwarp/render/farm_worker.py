@@ -1,48 +1,48 @@
 """A worker of a farm: gets each image's scene once, makes its device data once, and traces the tiles it is sent."""
 
-import copyreg
-import io
-import pickle
 import threading
 import time
-from collections.abc import Mapping, Sequence
-from types import MappingProxyType
+from collections import OrderedDict
+from collections.abc import Sequence
 from typing import Any
 
 import warp as wp
 
 from .. import __version__
-from ..kernels import KernelKey, assemble
+from ..kernels import assemble
+from ..kernels.parts import Parts
 from ..kernels.stamp import stamp
-from ..plan import EffectPlan
-from ..profiles import Table
-from ..scene import Scene
 from ..scene.digest import digest
 from .described import described
+from .farm_data import unpacked
 from .launch import loaded
 from .shoot import Shoot, Sums, shooter
 from .trace import Job
 
+HELD = 2
+"""Images that a worker keeps ready: while the last tiles of a frame are at work those of the next one begin."""
 _lock = threading.Lock()
-_ready: dict[str, "_Ready"] = {}
+_ready: OrderedDict[str, "_Ready"] = OrderedDict()
+_records: dict[str, Any] = {}
+_parts = Parts()
 
 
 class _Ready:
-    """What a worker has made of an image that it was sent."""
+    """What a worker has made of an image that it was sent; what the image before it had, too, is taken over."""
 
-    def __init__(self, name: str, data: bytes) -> None:
-        scene, plan, tables, key, number, device = unpacked(data)
+    def __init__(self, name: str, head: bytes, parts: dict[str, bytes]) -> None:
+        image = unpacked(head, parts, _records)
         wp.config.log_level = max(wp.config.log_level, wp.LOG_ERROR)
         wp.init()
-        found = digest(described(scene, plan, key))
+        found = digest(described(image.scene, image.plan, image.key))
         if found != name:
             raise ValueError(f"a worker reads another image than it was sent ({found}, not {name})")
-        if stamp(key) != number:
+        if stamp(image.key) != image.number:
             raise ValueError("a worker has other kernels of scratchwarp than this machine; install the same version")
-        built = assemble(scene, plan, tables, device)
-        kernel, _ = loaded(built.key, device)
+        built = assemble(image.scene, image.plan, image.tables, image.device, _parts)
+        kernel, _ = loaded(built.key, image.device)
         self.launches = 0
-        self.shoot: Shoot = shooter(kernel, built, plan, device, launched=self._launched)
+        self.shoot: Shoot = shooter(kernel, built, image.plan, image.device, launched=self._launched)
         self.warnings, self.numbers = built.warnings, dict(built.numbers)
         self._built = built  # its arrays are the kernel's
 
@@ -50,18 +50,23 @@ class _Ready:
         self.launches += 1
 
 
-def work(name: str, data: bytes, version: str, jobs: Sequence[Job]) -> dict[str, Any]:
+def work(
+    name: str, head: bytes, names: Sequence[str], parts: Sequence[bytes], version: str, jobs: Sequence[Job]
+) -> dict[str, Any]:
     """The sums of each job of the image ``name``, launches, seconds of computing, and what the device data says.
 
-    ``data``: the image as ``packed`` left it, which Dask brings to each worker once.
+    ``head`` and ``parts`` (of the hashes ``names``): the image as ``packed`` left it, which Dask brings to each worker
+    once.
     """
     if version != __version__:
         raise ValueError(f"a worker has scratchwarp {__version__}, this machine {version}; install the same")
     cpu = time.thread_time()
     with _lock:  # a worker has one thread; where somebody gives it more they take turns
         if name not in _ready:
-            _ready.clear()  # one image at a time: memory is bounded
-            _ready[name] = _Ready(name, data)
+            while len(_ready) >= HELD:  # memory is bounded
+                _ready.popitem(last=False)
+            _ready[name] = _Ready(name, head, dict(zip(names, parts, strict=True)))
+        _ready.move_to_end(name)
         ready = _ready[name]
         before = ready.launches
         sums: list[Sums] = [ready.shoot(job.tile, job.first, job.count, job.earlier) for job in jobs]
@@ -78,28 +83,3 @@ def work(name: str, data: bytes, version: str, jobs: Sequence[Job]) -> dict[str,
 def machine() -> str:
     """The kind of processor that kernels are compiled for: others may round otherwise."""
     return str(wp.get_cpu_kernel_cache_key())
-
-
-def packed(
-    scene: Scene, plan: EffectPlan, tables: Sequence[Table], key: KernelKey, device: str
-) -> bytes:  # fmt: skip
-    """An image as bytes, for ``unpacked`` of the same version alone."""
-    held = io.BytesIO()
-    _Pickler(held, pickle.HIGHEST_PROTOCOL).dump((scene, plan, tables, key, stamp(key), device))
-    return held.getvalue()
-
-
-def unpacked(data: bytes) -> tuple[Scene, EffectPlan, Sequence[Table], KernelKey, int, str]:
-    """What ``packed`` was given, and the number of its kernel."""
-    found: tuple[Scene, EffectPlan, Sequence[Table], KernelKey, int, str] = pickle.loads(data)
-    return found
-
-
-def _read_only(values: Mapping[Any, Any]) -> Mapping[Any, Any]:
-    return MappingProxyType(dict(values))
-
-
-class _Pickler(pickle.Pickler):
-    """One that knows mappings which cannot be changed."""
-
-    dispatch_table = copyreg.dispatch_table | {MappingProxyType: lambda values: (_read_only, (dict(values),))}

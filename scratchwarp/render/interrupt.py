@@ -21,10 +21,12 @@ class Stopped(KeyboardInterrupt):
 @dataclass(frozen=True)
 class Control:
     """What a running render is asked from outside, by any thread. ``stop``: end, keeping the checkpoint; ``snapshot``:
-    show the image as it is."""
+    show the image as it is. ``handed`` is set by the render: every tile is at a worker of a farm, so that there is room
+    for another image."""
 
     stop: threading.Event = field(default_factory=threading.Event)
     snapshot: threading.Event = field(default_factory=threading.Event)
+    handed: threading.Event = field(default_factory=threading.Event)
 
 
 @contextmanager

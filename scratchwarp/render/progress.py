@@ -19,11 +19,27 @@ def bar(quiet: bool = False, title: str = "") -> Iterator[Progress]:
     the stage "trace" counts samples, the others steps.
     Silent when ``quiet``, or when stderr is no terminal.
     """
+    with bars(quiet) as begin:
+        yield begin(title)
+
+
+@contextmanager
+def bars(quiet: bool = False) -> Iterator[Callable[[str], Progress]]:
+    """Yield ``begin(title)``, which gives the ``progress`` of one of several images that are made at a time, as ``bar``
+    has it. A stage "done" takes the lines of its image away."""
     if quiet or not sys.stderr.isatty():
-        yield silent
+        yield lambda title: silent
         return
     from rich.console import Console
-    from rich.progress import BarColumn, ProgressColumn, Task, TaskProgressColumn, TextColumn, TimeRemainingColumn
+    from rich.progress import (
+        BarColumn,
+        ProgressColumn,
+        Task,
+        TaskID,
+        TaskProgressColumn,
+        TextColumn,
+        TimeRemainingColumn,
+    )
     from rich.progress import Progress as Bars
     from rich.text import Text
 
@@ -33,16 +49,26 @@ def bar(quiet: bool = False, title: str = "") -> Iterator[Progress]:
             return Text(speed(rate), style="progress.data.speed")
 
     columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), Speed(), TimeRemainingColumn())
-    tasks = {}
-    with Bars(*columns, console=Console(stderr=True)) as bars:
+    # what is printed meanwhile goes above the bars, unless it goes elsewhere
+    with Bars(*columns, console=Console(stderr=True), redirect_stdout=sys.stdout.isatty()) as shown:
 
-        def progress(done: int, total: int, stage: str) -> None:
-            if stage not in tasks:
-                name = " ".join(word for word in (title, stage) if word)
-                tasks[stage] = bars.add_task(name, total=total, in_samples=stage == "trace")
-            bars.update(tasks[stage], completed=done, total=total)
+        def begin(title: str) -> Progress:
+            tasks: dict[str, TaskID] = {}
 
-        yield progress
+            def progress(done: int, total: int, stage: str) -> None:
+                if stage == "done":
+                    for task in tasks.values():
+                        shown.remove_task(task)
+                    tasks.clear()
+                    return
+                if stage not in tasks:
+                    name = " ".join(word for word in (title, stage) if word)
+                    tasks[stage] = shown.add_task(name, total=total, in_samples=stage == "trace")
+                shown.update(tasks[stage], completed=done, total=total)
+
+            return progress
+
+        yield begin
 
 
 def speed(samples_per_second: float | None) -> str:

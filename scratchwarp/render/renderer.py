@@ -69,7 +69,7 @@ def render(
     wp.init()
     clock, cpu = time.perf_counter(), time.process_time()
     bake = baked.find(scene.path)
-    tables, tables_simulated = simulate_tables(plan, threads, progress, bake)
+    tables, tables_simulated = simulate_tables(plan, threads, progress, bake, farm.tables if farm else None)
     simulated = time.perf_counter()
     key = kernel_key(scene, plan)
     about = described(scene, plan, key)

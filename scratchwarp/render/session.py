@@ -21,7 +21,7 @@ from .film import Film
 from .inspect import PixelReport, inspect
 from .launch import SAMPLES_A_LAUNCH, SUMS, film_arrays, launcher, loaded
 from .steps import Step, steps
-from .tables import simulate_table
+from .tables import identity, simulate_table
 from .target import noted, remaining
 from .tiles import Tile, run
 
@@ -157,9 +157,7 @@ class Session:
         """(the plan's tables, those of them that had to be simulated)."""
         simulated, tables = [], []
         for t in plan.tables:
-            mixed = tuple((profile.token, share) for profile, share in t.parts)
-            traced = (t.resolution, t.rays, t.sampler, t.incidence, t.max_bounces, t.theta_model, t.source)
-            key = (t.key, t.fresnel is None, *traced, mixed)
+            key = identity(t)
             if key not in self._tables:
                 self._tables[key] = simulate_table(t, plan.settings.threads or 1)
                 simulated.append(t)

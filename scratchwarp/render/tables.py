@@ -50,17 +50,37 @@ def simulate_table(
     return profiles.mixture([made[p.token, asked] for p, _ in table.parts], [share for _, share in table.parts])
 
 
+def identity(table: TablePlan) -> tuple[Any, ...]:
+    """What decides a profile table."""
+    mixed = tuple((profile.token, share) for profile, share in table.parts)
+    traced = (table.resolution, table.rays, table.sampler, table.incidence, table.max_bounces)
+    return (table.key, table.fresnel is None, *traced, table.theta_model, table.source, mixed)
+
+
 def simulate_tables(
-    plan: EffectPlan, threads: int, progress: Progress = silent, store: Baked | Oven | None = None
+    plan: EffectPlan,
+    threads: int,
+    progress: Progress = silent,
+    store: Baked | Oven | None = None,
+    earlier: dict[tuple[Any, ...], profiles.Table] | None = None,
 ) -> tuple[list[profiles.Table], int]:
-    """The plan's profile tables, in order, and how many of them had to be simulated."""
+    """The plan's profile tables, in order, and how many of them had to be simulated; ``earlier``: those of the plan
+    before, by identity, replaced by those of this one."""
     simulated = 0
     made: list[profiles.Table] = []
     known: dict[tuple[Any, ...], profiles.Table] = {}
+    there = dict(earlier or {})
     for number, table in enumerate(plan.tables):
         progress(number, len(plan.tables), "simulate")
+        name = identity(table)
+        if name in there:
+            made.append(there[name])
+            continue
         made.append(simulate_table(table, threads, known, store))
         simulated += store is None or table.source == "facets" or not store.note(table.users)
+    if earlier is not None:
+        earlier.clear()
+        earlier.update(zip(map(identity, plan.tables), made, strict=True))
     if plan.tables:
         progress(len(plan.tables), len(plan.tables), "simulate")
     return made, simulated
