@@ -27,10 +27,15 @@ def add_stage(parser: argparse.ArgumentParser, optional: bool = False) -> None:
     )
     group.add_argument("--mask", metavar="PATHS", default="", help="read only these prims; with commas")
     group.add_argument("--sessionLayer", "--session", metavar="FILE", help="USD layer laid over the stage")
-    group.add_argument(
+    add_memory(group)
+    group.add_argument("--renderSettingsPrimPath", "-rs", metavar="PATH", help="RenderSettings prim to follow")
+
+
+def add_memory(parser: argparse._ActionsContainer) -> None:
+    """How much memory what is read may take."""
+    parser.add_argument(
         "--max-memory", dest="maxMemory", metavar="SIZE", type=_size, help="of meshes and images: 8G [most of it]"
     )
-    group.add_argument("--renderSettingsPrimPath", "-rs", metavar="PATH", help="RenderSettings prim to follow")
 
 
 def add_settings(parser: argparse.ArgumentParser) -> None:
@@ -276,6 +281,7 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("--camera", "-cam", metavar="NAME", help="camera prim, by path or name")
     made.add_argument("--imageWidth", "-w", type=int, metavar="PIXELS", help="of the rendered image in it")
     made.add_argument("--spp", type=int, help="samples a pixel of the rendered image in it")
+    add_memory(made)
     web = made.add_argument_group("in the browser")
     web.add_argument("--web", action="store_true", help="print links that show the stage in browsers; Ctrl+C ends it")
     web.add_argument("--host", metavar="ADDRESS", help="to listen on [127.0.0.1, for this machine alone]")

@@ -143,6 +143,8 @@ def view(args: Command) -> int:
         raise UsageError(f"--frame {args.frame!r} is {len(frames)} frames; a window shows one")
     options = {"width": args.imageWidth, "spp": args.spp}
     given = {name: value for name, value in options.items() if value is not None}
+    reading = {"frame": frames[0], "camera": args.camera}
+    reading |= {"max_memory": args.maxMemory} if args.maxMemory else {}
     if Path(args.stage).suffix.lower() in viewers.BRDFS:
         if given or args.profile is not None or args.depth is not None or args.frame or args.camera or args.web:
             raise UsageError("a measured BRDF has neither frames nor cameras nor profiles; give --screenshot alone")
@@ -158,7 +160,7 @@ def view(args: Command) -> int:
             raise UsageError("--web shows a whole stage; leave out --profile, --depth and --screenshot")
         named = {"host": args.host, "port": args.port, "save": args.save, "session_layer": args.sessionLayer}
         given |= {name: value for name, value in named.items() if value is not None}
-        viewers.view_web(args.stage, browse=args.browse, frame=frames[0], camera=args.camera, **given)
+        viewers.view_web(args.stage, browse=args.browse, **reading, **given)
         return 0
     for name in ("host", "port", "save", "sessionLayer"):
         if getattr(args, name) is not None:
@@ -166,13 +168,11 @@ def view(args: Command) -> int:
     if args.profile is None and args.stage not in profiles.shape_names():
         if args.depth is not None:
             raise UsageError("--depth is of one profile; add --profile")
-        viewers.view(args.stage, args.screenshot, frame=frames[0], camera=args.camera, **given)
+        viewers.view(args.stage, args.screenshot, **reading, **given)
         return 0
     if given:
         raise UsageError("--imageWidth and --spp are of the rendered image, which the window of a profile has not")
-    viewers.view_profile(
-        args.stage, args.screenshot, layer=args.profile or "", depth=args.depth, frame=frames[0], camera=args.camera
-    )
+    viewers.view_profile(args.stage, args.screenshot, layer=args.profile or "", depth=args.depth, **reading)
     return 0
 
 

@@ -2,9 +2,12 @@
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from .scene import Scene
+
+if TYPE_CHECKING:
+    from .stage import LiveStage
 
 
 def read(
@@ -29,6 +32,20 @@ def read(
     Raises StageError (a ValueError) or OSError naming the file, the prim and the value that is at fault.
     """
     from . import stage
+
+    options = _bounded(max_memory) | options
+    return stage.read(path, frame=frame, camera=camera, purposes=tuple(purposes), **options)
+
+
+def read_live(path: str | Path, *, max_memory: float | None = None, **options: Any) -> "LiveStage":
+    """Read a stage that is edited while it is looked at; arguments and errors as ``read`` has them."""
+    from .stage import LiveStage
+
+    return LiveStage(path, **(_bounded(max_memory) | options))
+
+
+def _bounded(max_memory: float | None) -> dict[str, Any]:
+    """Options of a reading that takes at most ``max_memory`` bytes."""
     from .image import read_texture
     from .scene import Budget
 
@@ -37,5 +54,4 @@ def read(
     def load_texture(file: str, space: str) -> Any:
         return read_texture(file, space, budget)
 
-    options = {"load_texture": load_texture, "budget": budget, **options}
-    return stage.read(path, frame=frame, camera=camera, purposes=tuple(purposes), **options)
+    return {"load_texture": load_texture, "budget": budget}

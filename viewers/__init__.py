@@ -19,13 +19,14 @@ Files:
     sliders        a slider for a number
     looking        an image that refines in a thread while its stage is edited; turning moves camera and lights
     preview        the 3D view without a window; eye puts a window's eye where the camera is
-    web            the same in browsers
+    web            the same in browsers, by trame
     window         all of it together, and the keys of the window
     live_window    the same, its image refining as sliders and the camera are dragged; overlay lays it over the 3D view
 
 ``view`` opens the window; importing this package imports neither pyvista nor pxr nor Warp.
 """
 
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -90,7 +91,7 @@ def view_profile(source: Path | str, screenshot: Path | str | None = None, **opt
     """Show one cross-section with sliders for its numbers, and its table as it is simulated again at every step.
 
     ``source`` is a stage or the name of a shape. ``options`` are those of ``scratchwarp.viewers.live_profile.view``:
-    layer, depth, frame, camera, size. Raises as ``view`` does.
+    layer, depth, frame, camera, max_memory, size. Raises as ``view`` does.
     """
     from .display import pyvista
 
@@ -117,7 +118,7 @@ def view(stage_path: Path | str, screenshot: Path | str | None = None, **options
     which refines while sliders and the camera are dragged.
 
     Opens a window with the keys of ``KEYS``, or writes a picture to ``screenshot`` without a display. ``options`` are
-    those of ``scratchwarp.viewers.live_window.view``: frame, camera, width, spp, size, page.
+    those of ``scratchwarp.viewers.live_window.view``: frame, camera, max_memory, width, spp, size, page.
 
     Raises:
         ImportError: pyvista is missing.
@@ -133,11 +134,13 @@ def view(stage_path: Path | str, screenshot: Path | str | None = None, **options
 
 
 def view_web(stage_path: Path | str, **options: Any) -> None:
-    """Show a stage in browsers until interrupted, refined while it is edited; links are printed. Needs no pyvista.
+    """Show a stage in browsers until interrupted, refined while it is edited; links are printed.
 
     ``options`` are those of ``scratchwarp.viewers.web.serve``: host, port, save, width, spp, browse, and of ``read``.
-    Raises OSError where the address cannot be had, ValueError when the stage is at fault.
+    Raises ImportError without trame, OSError where the address cannot be had, ValueError when the stage is at fault.
     """
+    if find_spec("trame") is None:
+        raise ImportError('trame is missing: pip install "scratchwarp[viewers]"')
     from .web import serve
 
     serve(stage_path, **options)

@@ -44,6 +44,7 @@ def view(
     depth: float | None = None,
     frame: float | None = None,
     camera: str | None = None,
+    max_memory: float | None = None,
     size: tuple[int, int] = SIZE,
 ) -> None:
     """Show the cross-section of a stage's layer, or of a shape by its name, in a window with sliders.
@@ -52,7 +53,7 @@ def view(
         source: a stage, or one of ``profiles.shape_names()``.
         screenshot: write this picture instead, without a display.
         layer: name of the stage's layer to begin with [the first]; depth: in widths, to begin with.
-        frame, camera: as ``scratchwarp.read`` has them.
+        frame, camera, max_memory: as ``scratchwarp.read`` has them.
         size: of the window in pixels.
 
     Raises:
@@ -61,7 +62,7 @@ def view(
     """
     if screenshot is not None:
         check_writable(Path(screenshot))
-    choices, first = chosen(source, layer, frame, camera)
+    choices, first = chosen(source, layer, frame=frame, camera=camera, max_memory=max_memory)
     if depth is not None:
         choices[first] = choices[first].turned({"depth": depth})
     with canvas(screenshot is not None, size) as plotter:
@@ -73,16 +74,15 @@ def view(
             write(plotter, Path(screenshot))
 
 
-def chosen(
-    source: Path | str, layer: str = "", frame: float | None = None, camera: str | None = None
-) -> tuple[list[CrossSection], int]:
-    """The cross-sections of ``source`` and which of them is meant; ValueError when there is none."""
+def chosen(source: Path | str, layer: str = "", **reading: Any) -> tuple[list[CrossSection], int]:
+    """The cross-sections of ``source``, read as ``scratchwarp.read`` does, and which of them is meant; ValueError when
+    there is none."""
     if str(source) in profiles.shape_names():
         names = list(profiles.shape_names())
         return [cross_sections.of_shape(name) for name in names], names.index(str(source))
     import scratchwarp as sw
 
-    scene = sw.read(str(source), frame=frame, camera=camera)
+    scene = sw.read(str(source), **reading)
     found = cross_sections.of_scene(scene)
     if not found:
         raise ValueError(f"{source}: no material that is on something has a scratch layer")

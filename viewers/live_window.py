@@ -9,9 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from scratchwarp.image import read_texture
+from scratchwarp.pipeline import read_live
 from scratchwarp.scene import Camera, Control, Settings
-from scratchwarp.stage import LiveStage
 
 from .colors import Shown
 from .cross_sections import Knob
@@ -43,6 +42,7 @@ def view(
     *,
     frame: float | None = None,
     camera: str | None = None,
+    max_memory: float | None = None,
     width: int = 320,
     spp: int = 4,
     size: tuple[int, int] = (1600, 1000),
@@ -52,7 +52,7 @@ def view(
     display.
 
     Args:
-        frame, camera: as ``scratchwarp.read`` has them.
+        frame, camera, max_memory: as ``scratchwarp.read`` has them.
         width, spp: of the rendered image, in pixels and samples a pixel.
         size: of the window in pixels.
         page: which dozen of layers the plots show first.
@@ -63,7 +63,7 @@ def view(
     """
     if screenshot is not None:
         check_writable(Path(screenshot))
-    live = LiveStage(stage_path, camera=camera, frame=frame, load_texture=read_texture)
+    live = read_live(stage_path, camera=camera, frame=frame, max_memory=max_memory)
     with (
         canvas(screenshot is not None, size, (2, 2)) as plotter,
         Looking(live, Settings(width=width, spp=spp)) as looking,

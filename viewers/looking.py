@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from scratchwarp.image.quick import eight_bit
+from scratchwarp.plan.resolve import resolve
 from scratchwarp.render import Film, Session
 from scratchwarp.scene import Control, Scene, Settings
 from scratchwarp.stage import LiveStage
@@ -27,7 +28,7 @@ class Shown:
         picture: version of the pixels; edits: how many changes were made.
         size: of the whole image. samples, spp: a pixel, there and wanted (0 samples: a smaller image).
         redone: what the last change did again. message: what went wrong, "" if nothing.
-        controls: everything that can be turned, with values. scene: as it is; None before the first picture.
+        controls: everything that can be turned, with values. scene: as it is.
     """
 
     version: int = 0
@@ -68,7 +69,7 @@ class Looking:
         self._closed = False
         self._failure: BaseException | None = None
         self._session: Session | None = None
-        self.shown = Shown(controls=live.controls())
+        self.shown = Shown(controls=live.controls(), scene=live.scene, size=_size(live.scene, self._settings))
         self._thread = threading.Thread(target=self._run, name="look", daemon=True)
         self._thread.start()
 
@@ -232,3 +233,11 @@ class Looking:
         with self._condition:
             self.shown = replace(self.shown, version=self.shown.version + 1, **fields)
             self._condition.notify_all()
+
+
+def _size(scene: Scene, settings: Settings) -> tuple[int, int]:
+    """(width, height) of the image; (1, 1) where that is at fault, of which the plan will tell."""
+    try:
+        return resolve(scene, settings)[1]
+    except ValueError:
+        return 1, 1

@@ -256,7 +256,7 @@ def assemble(
     cut_by = (plan.settings.spp, sorted(turned(plan.settings.knobs, "groove").items()), laid)
     cut = parts.part(
         "grooves",
-        (digest(scene.materials, key, cut_by), scene.curves, scene.meshes, placed) if key.grooves else (),
+        (digest(plan.grooves, key, cut_by), scene.curves, scene.meshes, placed) if key.grooves else (),
         lambda: grooves.pack(scene, plan, key, shape, device),
     )
     scratch_set.grooves = cut.arrays

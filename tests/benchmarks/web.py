@@ -3,14 +3,14 @@
     python tests/benchmarks/web.py [STAGE] [--width 480] [--steps 12] [--screenshot page.png]
 
 Without STAGE: the demo ball. The first slider of the panel that is called Depth is dragged step by step; each step
-waits until the picture is another one. It must be within half a second in the median, and the console must stay empty.
+waits until another picture has been loaded. It must be within half a second in the median, and the console must say no
+error.
 """
 
 import argparse
 import os
 import shutil
 import tempfile
-import threading
 import time
 from pathlib import Path
 
@@ -46,14 +46,13 @@ def main() -> int:
         WebView(looking, Path(folder, "look.usda")) as server,
         sync_playwright() as started,
     ):
-        threading.Thread(target=server.serve_forever, args=(0.05,), daemon=True).start()
         looking.finished(300)
         browser = started.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
         page = browser.new_context(viewport={"width": 1280, "height": 800}).new_page()
-        page.on("console", lambda message: said.append(message.text))
+        page.on("console", lambda message: message.type in ("error", "warning") and said.append(message.text))
         page.on("pageerror", lambda error: said.append(str(error)))
         page.goto(server.guard.link())
-        page.wait_for_selector("body[data-ready=yes]")
+        page.wait_for_selector("#look")
         page.evaluate("() => document.querySelectorAll('details').forEach((fold) => { fold.open = true; })")
         page.wait_for_selector(".control")
         row = page.locator(".control", has=page.locator(".label", has_text="Depth")).first
@@ -76,7 +75,6 @@ def main() -> int:
         if args.screenshot:
             page.screenshot(path=args.screenshot)
         browser.close()
-        server.shutdown()
     median = float(np.median(seconds))
     print(f"a step of the slider to another picture: median {1e3 * median:.0f} ms, worst {1e3 * max(seconds):.0f} ms")
     print(f"the console said {said or 'nothing'}")

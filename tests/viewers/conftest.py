@@ -20,8 +20,13 @@ from scratchwarp.scene import (
     Profile,
     RectLight,
     Scene,
+    Settings,
     SphereLight,
 )
+from scratchwarp.stage import LiveStage
+from scratchwarp.viewers.looking import Looking
+
+from .look_stage import STAGE
 
 WHITE = np.ones(3)
 
@@ -71,3 +76,21 @@ def make_layer() -> Callable[..., Layer]:
         return Layer(name, "/mtl", Profile("/mtl/cut"), **fields)
 
     return make
+
+
+@pytest.fixture(scope="session")
+def server(tmp_path_factory):
+    """The viewer for browsers on a free port, one for all tests: what they change they put back."""
+    pytest.importorskip("trame")
+    from scratchwarp.viewers.web.server import WebView
+
+    folder = tmp_path_factory.mktemp("web")
+    (folder / "ball.usda").write_text(STAGE)
+    (folder / "secret.txt").write_text("secret")
+    live = LiveStage(folder / "ball.usda")
+    with (
+        Looking(live, Settings(width=64, spp=3, threads=2)) as looking,
+        WebView(looking, folder / "look.usda") as served,
+    ):
+        looking.finished(180)
+        yield served

@@ -1,39 +1,19 @@
 """The viewer in headless Chromium: a depth slider is dragged and the picture changes, and so on through the page."""
 
 import shutil
-import threading
 import time
 
 import pytest
 
-from scratchwarp.scene import Settings
 from scratchwarp.stage import LiveStage
-from scratchwarp.viewers.looking import Looking
-from scratchwarp.viewers.web.server import WebView
 
-from .look_stage import DEPTH, METAL, STAGE
+from .look_stage import DEPTH, METAL
 
 playwright = pytest.importorskip("playwright.sync_api")
 CHROMIUM = next(
     (path for name in ("chromium", "chromium-browser", "google-chrome") if (path := shutil.which(name))), None
 )
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine")
-
-
-@pytest.fixture(scope="module")
-def server(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("browser")
-    (folder / "ball.usda").write_text(STAGE)
-    with (
-        Looking(LiveStage(folder / "ball.usda"), Settings(width=64, spp=3, threads=2)) as looking,
-        WebView(looking, folder / "look.usda") as served,
-    ):
-        thread = threading.Thread(target=served.serve_forever, args=(0.05,), daemon=True)
-        thread.start()
-        looking.finished(180)
-        yield served
-        served.shutdown()
-        thread.join()
 
 
 @pytest.fixture(scope="module")
@@ -46,14 +26,18 @@ def chromium():
 
 @pytest.fixture
 def page(server, chromium):
-    """The page in a browser of its own; what its console said must be nothing."""
+    """The page in a browser of its own; its console must say no error, and all it asks for be here."""
     server.looking.reset()
     opened = chromium.new_context(viewport={"width": 1200, "height": 800}).new_page()
     said = []
-    opened.on("console", lambda message: said.append(message.text))
+    opened.on("console", lambda message: message.type in ("error", "warning") and said.append(message.text))
     opened.on("pageerror", lambda error: said.append(str(error)))
+    here = tuple(f"{kind}://127.0.0.1:{server.address[1]}/" for kind in ("http", "ws"))
+    opened.on("request", lambda asked: asked.url.startswith((*here, "data:")) or said.append(asked.url))
+    failed = ("net::ERR_ABORTED", None)  # a picture that another one overtook
+    opened.on("requestfailed", lambda asked: asked.failure in failed or said.append(f"{asked.url}: {asked.failure}"))
     opened.goto(server.guard.link())
-    opened.wait_for_selector("body[data-ready=yes]")
+    opened.wait_for_selector("#look")
     yield opened
     assert said == []
     opened.context.close()
@@ -106,11 +90,11 @@ def test_dragging_the_depth_slider_changes_the_picture(server, page):
     number = float(row.locator("input[type=number]").input_value())
     assert number == pytest.approx(depth_in(server), rel=1e-3)
     page.reload()
-    page.wait_for_selector("body[data-ready=yes]")
+    page.wait_for_selector("#look")
     assert float(row.locator("input[type=number]").input_value()) == pytest.approx(number)
     second = page.context.browser.new_context().new_page()
     second.goto(server.guard.link())
-    second.wait_for_selector("body[data-ready=yes]")
+    second.wait_for_selector("#look")
     beside = second.locator(f'.control[data-id="{DEPTH}"] input[type=number]')
     assert float(beside.input_value()) == pytest.approx(number)
     beside.fill("3")

@@ -1,12 +1,12 @@
-"""Who may ask the viewer's server: one-time links, a cookie for each browser, known hosts, small bodies."""
+"""Who may ask the viewer's server: one-time links, a cookie for each browser, known hosts, small requests."""
 
 import hmac
 import secrets
 import threading
-from email.message import Message
+from collections.abc import Mapping
 from http.cookies import CookieError, SimpleCookie
 
-# Bytes of a request's path and of its body: an edit of every control of a large stage fits.
+# Bytes of a request's path, and of a message or a body: an edit of every control of a large stage fits.
 LONGEST_PATH = 2048
 LARGEST_BODY = 1 << 18
 LOOPBACK = ("127.0.0.1", "localhost", "[::1]")
@@ -21,18 +21,24 @@ class Refused(Exception):
 
 
 class Guard:
-    """Tokens that open the page once each, and the secret that a browser keeps in its cookie afterwards.
+    """Tokens that open the page once each, and the secrets that a browser keeps afterwards.
 
     ``host``: what the server is bound to; on a loopback address only requests that name one are answered, so that no
-    other site's name can be pointed here.
+    other site's name can be pointed here. ``port``: 0, and nobody gets in, until the server listens. ``secret``: what a
+    browser with a cookie is given to open the socket with, too.
     """
 
-    def __init__(self, host: str, port: int) -> None:
+    def __init__(self, host: str, port: int = 0) -> None:
         self.host, self.port = host, port
-        self.cookie = f"scratchwarp_{port}"
-        self._secret = secrets.token_urlsafe(32)
+        self.secret = secrets.token_urlsafe(32)
+        self._cookie = secrets.token_urlsafe(32)
         self._tokens: set[str] = set()
         self._lock = threading.Lock()
+
+    @property
+    def cookie(self) -> str:
+        """Name of the cookie: browsers keep one jar for all ports of a host."""
+        return f"scratchwarp_{self.port}"
 
     def link(self) -> str:
         """An address that opens the page, once."""
@@ -49,19 +55,19 @@ class Guard:
             if known is None:
                 raise Refused(403, "this link was used or never given; ask the one that started the viewer for another")
             self._tokens.remove(known)
-        return f"{self.cookie}={self._secret}; Path=/; HttpOnly; SameSite=Strict"
+        return f"{self.cookie}={self._cookie}; Path=/; HttpOnly; SameSite=Strict"
 
-    def check(self, headers: Message) -> None:
+    def check(self, headers: Mapping[str, str]) -> None:
         """Refused unless the request carries the cookie."""
         try:
             jar = SimpleCookie(headers.get("Cookie") or "")
         except CookieError:
             raise Refused(403, "the cookie cannot be read") from None
         brought = jar[self.cookie].value if self.cookie in jar else ""
-        if not hmac.compare_digest(brought.encode(), self._secret.encode()):
+        if not self.port or not hmac.compare_digest(brought.encode(errors="replace"), self._cookie.encode()):
             raise Refused(403, "open the viewer by the link that it printed")
 
-    def check_host(self, headers: Message) -> None:
+    def check_host(self, headers: Mapping[str, str]) -> None:
         """Refused unless the request names this server, and comes from no other site."""
         names = (*LOOPBACK, self.host) if self.host in ("127.0.0.1", "::1", "localhost") else ()
         known = {f"{name}:{self.port}" for name in names}
@@ -73,13 +79,12 @@ class Guard:
             raise Refused(403, "the viewer answers no other site")
 
     @staticmethod
-    def body_size(headers: Message) -> int:
-        """Bytes of a request's body; Refused where it does not say, says too many, or is no JSON."""
-        length = headers.get("Content-Length")
-        if headers.get("Transfer-Encoding") or length is None or not length.isascii() or not length.isdigit():
+    def check_size(path: str, headers: Mapping[str, str]) -> None:
+        """Refused where the path is long, or a body is large or does not say how large it is."""
+        if len(path) > LONGEST_PATH:
+            raise Refused(414, "the path is too long")
+        length = headers.get("Content-Length") or "0"
+        if headers.get("Transfer-Encoding") or not length.isascii() or not length.isdigit():
             raise Refused(411, "say how long the body is")
         if len(length) > 12 or int(length) > LARGEST_BODY:
             raise Refused(413, f"the body is larger than {LARGEST_BODY} bytes")
-        if (headers.get("Content-Type") or "").split(";")[0].strip() != "application/json":
-            raise Refused(415, "the body must be application/json")
-        return int(length)

@@ -1,13 +1,11 @@
 """serve: from a stage to an address that shows it."""
 
-import threading
 import webbrowser
 from pathlib import Path
 from typing import Any
 
-from scratchwarp.image import read_texture
+from scratchwarp.pipeline import read_live
 from scratchwarp.scene import Settings
-from scratchwarp.stage import LiveStage
 
 from ..looking import Looking
 from .server import WebView
@@ -31,11 +29,11 @@ def serve(
         save: the file that edits are saved to [beside the stage, ``<name>.look.usda``].
         width, spp: of the image; spp None is the stage's, else 16.
         browse: open the link in this machine's browser.
-        reading: keywords of ``scratchwarp.read``.
+        reading: frame, camera, session_layer, max_memory and so on, as ``scratchwarp.read`` has them.
 
     Raises OSError where the address cannot be had, ValueError when the stage is at fault.
     """
-    live = LiveStage(stage_path, load_texture=read_texture, **reading)
+    live = read_live(stage_path, **reading)
     target = Path(save) if save else Path(stage_path).with_suffix(".look.usda")
     with Looking(live, Settings(width=width, spp=spp)) as looking, WebView(looking, target, host, port) as server:
 
@@ -47,11 +45,6 @@ def serve(
         print(f"open  {link}\n(each link opens the viewer in one browser; Ctrl+C ends it)", flush=True)
         if browse:
             webbrowser.open(link)
-        thread = threading.Thread(target=server.serve_forever, args=(0.2,), name="web", daemon=True)
-        thread.start()
-        try:
-            shown = looking.shown
-            while True:  # until interrupted, or until the thread that refines the image fails
-                shown = looking.wait(shown.version, 1.0)
-        finally:
-            server.shutdown()
+        shown = looking.shown
+        while True:  # until interrupted, or until the thread that refines the image fails
+            shown = looking.wait(shown.version, 1.0)
