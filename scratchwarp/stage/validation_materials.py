@@ -58,6 +58,13 @@ def check_sizes(prim: Usd.Prim) -> Iterator[Problem]:
                 "warning",
             )
         yield from check_unread(prim, layer, get["distribution"])
+        if get["distribution"] in REGULAR and get["width"] > get["pitch"] * (1 + 1e-6):
+            yield Problem(
+                layer_attribute(prim, layer, "width").GetPath(),
+                f"width of layer {layer!r} is {get['width']:g} but its scratches lie {get['pitch']:g} apart and so "
+                "overlap; widen the pitch, or narrow the scratches",
+                "warning",
+            )
         yield from check_variation(prim, layer)
 
 

@@ -237,6 +237,13 @@ CASES = [
         ["pitch of layer 'fine' is 5", "'worley' does not read it", "coverage or density"],
     ),
     (
+        "wider than their distance",
+        material('uniform token scratch:layer:fine:distribution = "linear"\nfloat scratch:layer:fine:pitch = 5'),
+        "warning",
+        "ScratchSizes",
+        ["width of layer 'fine' is 10", "5 apart", "overlap"],
+    ),
+    (
         "two amounts",
         material("float scratch:layer:fine:coverage = 0.2\nfloat scratch:layer:fine:density = 3"),
         "warning",
@@ -326,7 +333,7 @@ def test_every_rule_has_a_case():
 
 GOOD = [
     material(f"rel scratch:layer:fine:profile = </M/P>\n{points('[(0, 0), (0.5, -1), (1, 0)]')}"),
-    material('uniform token scratch:layer:fine:distribution = "linear"\nfloat scratch:layer:fine:pitch = 5'),
+    material('uniform token scratch:layer:fine:distribution = "linear"\nfloat scratch:layer:fine:pitch = 15'),
     material(
         'uniform token scratch:layer:fine:distribution = "curves"\nrel scratch:layer:fine:curves = </C>',
         more=GOOD_CURVES,
