@@ -246,9 +246,11 @@ def assemble(
     )
     scratch_set.variations = material.pack_variations(plan.layers if key.variation else (), device)
     waved = tuple(tuple(x.layer.label for x in w.layers) if w is not None else () for w in plan.waves)
+    knobs = plan.settings.knobs
+    sliced = sorted((turned(knobs, "wave") | turned(knobs, "glint")).items())
     sparkle = parts.part(
         "glints",
-        (digest(scene.materials, key, waved), scene.curves, scene.meshes, scene.textures, placed) if key.glints else (),
+        (digest(scene.materials, key, waved, sliced), scene.curves, scene.meshes, scene.textures, placed) if key.glints else (),
         lambda: glints.pack(scene, plan, key, shape, device),
     )
     scratch_set.glints = sparkle.arrays

@@ -9,6 +9,9 @@ from .maps_device import MapSet
 
 wp.set_module_options({"enable_backward": False})
 
+MOST_SLICES = wp.constant(16)
+"""Of a light."""
+
 
 @wp.struct
 class WaveMaterial:
@@ -102,7 +105,8 @@ class GlintArrays:
     even steps of the cosine from 0 to 1; ``shares``: mean |D|^2 of each part of the spectrum, ``share_colors`` linear
     Rec.709 of these parts. The pieces of triangle t are
     ``segments[starts[t] .. starts[t + 1]]``; ``around[around_starts[t] .. around_starts[t + 1]]`` are the triangles
-    that share a corner with it, and itself, which hold all within ``around_reach[t]`` [m] of it."""
+    that share a corner with it, and itself, which hold all within ``around_reach[t]`` [m] of it. A light that a scratch
+    sees a part of is taken in ``slices``: (place, weight) ``nodes`` over [0, 1]."""
 
     material: wp.array(dtype=int)
     waves: wp.array(dtype=WaveMaterial)
@@ -126,6 +130,8 @@ class GlintArrays:
     rules: Rules
     maps: MapSet
     fringes: wp.array3d(dtype=wp.vec3)
+    slices: int
+    nodes: wp.array(dtype=wp.vec2)
 
 
 @wp.struct

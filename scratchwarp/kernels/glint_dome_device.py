@@ -19,11 +19,8 @@ from .lobe_device import largest
 from .material_device import MaterialArrays
 from .world_device import LightSet
 
-SIDE = 7
-"""Parts on either side of the mirror direction."""
 CELLS = 16
 """Of the hemisphere, in which rays for a dome are shared."""
-_SIDE = wp.constant(SIDE)
 
 
 @wp.func
@@ -100,6 +97,7 @@ def make_dome_light(key: KernelKey, transmittance, radiance_of):
         table = wp.static(tabled) and layer.wide_depths > 0 and strand.pitch == 0.0
         if wp.static(key.glint_pairs):
             table = table and strand.pair.kind == 0
+        parts = wp.max(a.slices - 1, 1)  # on either side of the mirror direction
         for side in range(2):
             sign = float(2 * side - 1)
             span = 1.0 - sign * mirror
@@ -108,9 +106,9 @@ def make_dome_light(key: KernelKey, transmittance, radiance_of):
             if wp.static(tabled):
                 if table and span > 1.0e-4:
                     before = wide_integral(a, layer, strand.depth, strand.width * (view.o[1] + s * at))
-            for k in range(_SIDE):
+            for k in range(parts):
                 if span > 1.0e-4:
-                    t = float(k + 1) / float(_SIDE)
+                    t = float(k + 1) / float(parts)
                     following = mirror + sign * span * t * t
                     middle = 0.5 * (at + following)
                     height = wp.sqrt((1.0 - middle) * (1.0 + middle))

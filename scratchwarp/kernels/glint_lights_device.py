@@ -18,7 +18,7 @@ from ..reflectance.diffraction.interval_device import (
 from ..reflectance.diffraction.response_device import along_variance
 from .direct_device import models_of
 from .geometry_device import Geometry
-from .glint_arrays_device import GlintArrays, Strand, WaveLayer, WaveMaterial
+from .glint_arrays_device import MOST_SLICES, GlintArrays, Strand, WaveLayer, WaveMaterial
 from .glint_dome_device import CELLS, make_dome_light
 from .glint_sums_device import REACH, View, as_xi2, cosine_of, make_glint_sums, slice_at
 from .key import KernelKey
@@ -54,12 +54,12 @@ def make_strand_light(key: KernelKey, transmittance):
     ) -> wp.vec3:
         total = wp.vec3(0.0, 0.0, 0.0)
         e = cap_extent(axis, half_angle)
-        s = xi1_slices(view, e.low, e.high, 1)
+        s = xi1_slices(a, view, e.low, e.high, 1)
         if s.count > 0:
-            places = wp.zeros(shape=8, dtype=wp.vec3)
-            cuts = wp.zeros(shape=8, dtype=wp.vec4)
+            places = wp.zeros(shape=MOST_SLICES, dtype=wp.vec3)
+            cuts = wp.zeros(shape=MOST_SLICES, dtype=wp.vec4)
             for i in range(s.count):
-                at = slice_at(s, i)
+                at = slice_at(a, s, i)
                 psi = cut_cap(axis, half_angle, at[0])
                 cuts[i] = as_xi2(view.o, at[0], psi)
                 cosine = cosine_of(view.o, at[0], 0.5 * (psi[0] + psi[1]))
@@ -112,12 +112,12 @@ def make_strand_light(key: KernelKey, transmittance):
             high = 1.0
         if behind == 1:
             low = -1.0
-        s = xi1_slices(view, low, high, 0)
+        s = xi1_slices(a, view, low, high, 0)
         if s.count > 0:
-            places = wp.zeros(shape=8, dtype=wp.vec3)
-            cuts = wp.zeros(shape=8, dtype=wp.vec4)
+            places = wp.zeros(shape=MOST_SLICES, dtype=wp.vec3)
+            cuts = wp.zeros(shape=MOST_SLICES, dtype=wp.vec4)
             for i in range(s.count):
-                at = slice_at(s, i)
+                at = slice_at(a, s, i)
                 psi = wp.vec4(-0.5 * wp.pi, 0.5 * wp.pi, 0.0, 0.0)
                 for k in range(count):
                     psi = behind_edge(psi, normals[k], at[0])

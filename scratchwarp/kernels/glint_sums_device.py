@@ -23,20 +23,7 @@ from .glint_fringes_device import scratch_fringes
 from .glint_pairs_device import pair_point, pair_slices
 from .lobe_device import largest
 
-_vec8 = wp.types.vector(length=8, dtype=float)
-# Gauss-Legendre over [0, 1].
-_NODES = wp.constant(
-    _vec8(
-        0.0198550718, 0.1016667613, 0.2372337950, 0.4082826788, 0.5917173212, 0.7627662050, 0.8983332387, 0.9801449282
-    )
-)
-_WEIGHTS = wp.constant(
-    _vec8(
-        0.0506142681, 0.1111905172, 0.1568533229, 0.1813418917, 0.1813418917, 0.1568533229, 0.1111905172, 0.0506142681
-    )
-)
 _CHANNELS = wp.constant(wp.vec3(0.612, 0.549, 0.465))  # um
-_SLICES = wp.constant(8)
 REACH = wp.constant(3.3)  # standard deviations
 _SQRT_PI = wp.constant(1.7724538509)
 _SQRT_TWO_PI = wp.constant(2.5066282746)
@@ -66,15 +53,15 @@ class Slices:
 
 
 @wp.func
-def slice_at(s: Slices, i: int) -> wp.vec2:
+def slice_at(a: GlintArrays, s: Slices, i: int) -> wp.vec2:
     """(u, weight) of a slice; the weight of a whole Gaussian adds up to 1, else to the range of u."""
     r = wp.vec2(s.u0, 1.0)
     if s.whole == 1:
         if s.count == 2:
             r = wp.vec2(wp.where(i == 0, s.u0, s.u1), 0.5)
     else:
-        t = _NODES[i]
-        w = _WEIGHTS[i] * (s.u1 - s.u0)
+        t = a.nodes[i][0]
+        w = a.nodes[i][1] * (s.u1 - s.u0)
         if s.round == 1:
             # takes out the square roots with which a round light begins and ends
             w = w * 6.0 * t * (1.0 - t)
@@ -156,7 +143,7 @@ def make_glint_sums(method: str, gratings: bool, lookup: bool, numeric: bool, pa
     across = across_integral_paper if method == "paper" else across_integral
 
     @wp.func
-    def xi1_slices(view: View, low: float, high: float, rounded: int) -> Slices:
+    def xi1_slices(a: GlintArrays, view: View, low: float, high: float, rounded: int) -> Slices:
         """The slices to take of a light that fills u from ``low`` to ``high``."""
         r = Slices()
         middle = -view.o[0] - view.shift
@@ -167,14 +154,14 @@ def make_glint_sums(method: str, gratings: bool, lookup: bool, numeric: bool, pa
                 r.u0 = middle
         else:
             reach = REACH * view.deviation
-            a = wp.max(low, middle - reach)
-            b = wp.min(high, middle + reach)
-            if a < b:
-                r.u0 = a
-                r.u1 = b
+            first = wp.max(low, middle - reach)
+            last = wp.min(high, middle + reach)
+            if first < last:
+                r.u0 = first
+                r.u1 = last
                 r.round = rounded
-                r.count = _SLICES
-                if a > low and b < high:
+                r.count = a.slices
+                if first > low and last < high:
                     r.whole = 1
                     r.count = 2
                     r.u0 = middle - view.deviation

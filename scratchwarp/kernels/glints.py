@@ -9,6 +9,7 @@ import warp as wp
 
 from ..optics import spectra
 from ..plan import EffectPlan
+from ..plan.knobs import value
 from ..plan.waves import REGULAR, WaveLayerPlan, is_grating, looks_up, looks_up_points, reflectances
 from ..reflectance.diffraction.arrays import rules
 from ..reflectance.diffraction.color import spectral_samples
@@ -164,6 +165,10 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
     segments = None
     if key.glint_footprint in ("exact", "paper"):
         arrays.rules = rules((16,))
+    arrays.slices = int(value(plan.settings.knobs, "diffraction.slices"))
+    at, weights = np.polynomial.legendre.leggauss(arrays.slices)
+    nodes = np.stack([0.5 * (1.0 + at), 0.5 * weights], axis=1)
+    arrays.nodes = wp.array(nodes.astype(np.float32), dtype=wp.vec2, device=device)
     if key.glint_fringes:
         arrays.fringes = wp.array(fringes(), dtype=wp.vec3, device=device)
     if strokes:

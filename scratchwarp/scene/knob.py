@@ -20,7 +20,7 @@ class Knob:
         error: what goes wrong at cheap values, a phrase; ``source``: where the method is described.
         effects: it acts only where one of these is on; none: everywhere.
         sets: what a value goes to: ``settings.FIELD``, ``table.FIELD`` of every ``TablePlan``, ``wave.FIELD`` of what
-            diffracts, ``camera.FIELD`` and ``groove.FIELD`` of what is built for them; "" for ``switches``: value ->
+            diffracts, ``camera.FIELD``, ``groove.FIELD`` and ``glint.FIELD`` of what is built for them; "" for ``switches``: value ->
             effects that it forces on or off.
         limits: least and greatest value of a number; other numbers than ``values`` may be asked for between them.
         quality: values for draft, preview, final and reference; none: the default for all of them.
@@ -57,7 +57,7 @@ class Knob:
 
     @property
     def place(self) -> tuple[str, str]:
-        """(settings, table, wave, camera, groove or effects; the field)."""
+        """(settings, table, wave, camera, groove, glint or effects; the field)."""
         where, _, what = self.sets.partition(".")
         return (where, what) if self.sets else ("effects", "")
 

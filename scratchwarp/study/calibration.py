@@ -32,18 +32,22 @@ from .report import machine
 # Nanoseconds that a fit begins with and falls back to where no stage tells.
 PRIOR: dict[str, float] = {
     "camera": 600.0, "camera.triangles": 500.0, "base": 150.0, "shadows": 160.0, "scratches.table": 100.0,
-    "lights.closedForm": 300.0, "lights.coneTaps": 15.0, "lights.sampled": 200.0, "diffraction.segments": 1000.0,
-    "diffraction.bands": 200.0, "grooves": 1000.0, "grooves.crossings": 120.0, "grooves.paths": 100.0,
-    "tables.table": 3e7, "tables.cell": 50.0, "tables.ray": 300.0, "tables.rayBounced": 600.0,
+    "lights.closedForm": 300.0, "lights.coneTaps": 15.0, "lights.sampled": 200.0, "diffraction.pieces": 40.0,
+    "diffraction.found": 500.0, "diffraction.strands": 300.0, "diffraction.bands": 200.0, "diffraction.points": 300.0,
+    "diffraction.caps": 3000.0, "diffraction.polygons": 10000.0, "diffraction.domes": 5000.0, "grooves.found": 300.0,
+    "grooves.rays": 300.0, "grooves.rayFacets": 30.0, "grooves.lines": 300.0, "grooves.lineFacets": 100.0,
+    "grooves.linePairs": 10.0, "build.grooves": 10000.0, "build.cells": 1000.0, "tables.table": 3e7, "tables.cell": 50.0, "tables.ray": 300.0, "tables.rayBounced": 600.0,
     "build.triangles": 3000.0, "build.pixels": 100.0, "build.kernel": 5e7, "build.strokes": 20000.0,
     **{f"lights.{name}": float(ns) for name, ns in LIGHT.items()},
     **{f"scratches.{name}": float(ns) for name, ns in SET.items()}, **UNMEASURED,
 }  # fmt: skip
 STAGES = (
-    "ball", "plain", "panel", "gold", "plastic", "patterns", "spoon", "disc", "roof", "grooves_parallel",
-    "grooves_crossing",
+    "ball", "plain", "panel", "gold", "plastic", "patterns", "spoon", "spoon_window", "spoon_dome", "disc", "roof",
+    "grooves_parallel", "grooves_crossing", "vinyls",
 )  # fmt: skip
 """Demo stages that prices are fitted to; the others are for testing them."""
+WIDER = 2
+"""Samples a pixel of a second measurement where work depends on what a sample stands for."""
 RIDGE = 0.1
 """Weight of the prior beside that of one stage."""
 TABLE_SIZES = ((32, 16), (64, 128), (128, 32), (256, 16), (256, 512))
@@ -162,6 +166,11 @@ def prices(
     return found, later, float(np.exp(np.quantile(off, 0.9)))
 
 
+def _depends(scene: Scene) -> list[bool]:
+    """Of each material, whether its scratches are looked for under a footprint."""
+    return [m.wave is not None or any(layer.model == "groove" for layer in m.layers) for m in scene.materials]
+
+
 def efficiency() -> float:
     """Share of one thread's speed that each of all threads has, of arithmetic that fits the caches; at most 1."""
     return 0.9 if (os.cpu_count() or 1) > 1 else 1.0
@@ -196,6 +205,8 @@ def calibrate(
         for forced in VARIANTS if number == 0 else ({},):
             jobs.append((name, scene, forced, {"spp": 16}))
     jobs += [(name, scene, {}, {"spp": 8, "integrator": "path"}) for name, scene in known[:3]]
+    wide = [(name, scene) for name, scene in known if any(_depends(scene))]
+    jobs += [(name, scene, {}, {"spp": WIDER}) for name, scene in wide]
     for number, (name, scene, forced, more) in enumerate(jobs):
         progress(number, len(jobs), f"calibrate {name}")
         samples.append(measured(name, scene, Settings(width=width, threads=1, effects=forced, **more)))

@@ -12,15 +12,14 @@ from typing import Any
 import numpy as np
 
 from ...lights.registry import MODELS
-from ...scene import Layer, PreviewSurface, Scene, TextureInput
+from ...scene import PreviewSurface, Scene, TextureInput
 from ..choice import EffectPlan, TablePlan
 from ..effects import integrated_lights, sampled_lights
 from ..occlusion import can_occlude
-from ..wave_effects import footprint_and_triangle
+from .groove_work import groove_units, laid_pieces
 from .visible import visible
+from .wave_work import wave_units
 
-REACH = 3.5
-"""Scratches that diffract are looked for so many coherence radii about a sample."""
 SLICES = {"gamma": 2, "quadratic": 3, "table": 8, "full": 16}
 """About how many slices along the cone a theta model keeps."""
 BOUNCES = 2.0
@@ -47,7 +46,8 @@ def work(scene: Scene, plan: EffectPlan, seen: np.ndarray | None = None) -> Work
     x0, x1, y0, y1 = plan.window
     samples = float((x1 - x0) * (y1 - y0) * (plan.settings.spp or 1))
     each = _surfaces(scene, plan, shares)
-    for more in (_scratches(scene, plan, shares), _waves(scene, plan, shares), _grooves(scene, plan, shares)):
+    own = shares.tolist()
+    for more in (_scratches(scene, plan, shares), wave_units(scene, plan, own), groove_units(scene, plan, own)):
         for name, count in more.items():
             each[name] = each.get(name, 0.0) + count
     tables: Units = {}
@@ -59,7 +59,9 @@ def work(scene: Scene, plan: EffectPlan, seen: np.ndarray | None = None) -> Work
         ("geometry", "build.triangles"): float(scene.triangles),
         ("base.textures", "build.pixels"): float(pixels),
         ("kernel", "build.kernel"): 1.0,
-        ("diffraction", "build.strokes"): _strokes(scene, plan) if plan.on("diffraction.segments") else 0.0,
+        ("diffraction", "build.strokes"): _strokes(scene) if plan.on("diffraction.segments") else 0.0,
+        ("grooves", "build.grooves"): laid_pieces(scene, plan),
+        ("scratches.table", "build.cells"): float(sum(_cells(table) for table in plan.tables)),
     }
     depth = plan.settings.max_depth or 1
     several = plan.on("indirect") and can_occlude(scene, plan.on("base.opacity"))  # not only grooves light one another
@@ -70,8 +72,8 @@ def work(scene: Scene, plan: EffectPlan, seen: np.ndarray | None = None) -> Work
 def of_table(table: TablePlan) -> Units:
     """Units of simulating one table."""
     parts = float(len(table.parts) or 1)
-    slices = 1 if table.fresnel is None else SLICES.get(table.theta_model, 8)
-    cells = parts * table.resolution**2 * slices
+    slices = _slices(table)
+    cells = parts * _cells(table)
     if table.source == "facets":
         return {("scratches.table", "tables.table"): 1.0, ("scratches.table", "tables.cell"): cells}
     rays = parts * table.resolution * table.rays
@@ -81,6 +83,14 @@ def of_table(table: TablePlan) -> Units:
         ("scratches.table", "tables.cell"): cells,
         (effect, "tables.rayBounced" if table.max_bounces > 1 else "tables.ray"): rays * (1.0 + 0.15 * slices),
     }
+
+
+def _slices(table: TablePlan) -> int:
+    return 1 if table.fresnel is None else SLICES.get(table.theta_model, 8)
+
+
+def _cells(table: TablePlan) -> float:
+    return float(table.resolution**2 * _slices(table))
 
 
 def _surfaces(scene: Scene, plan: EffectPlan, shares: np.ndarray) -> Units:
@@ -164,67 +174,5 @@ def _scratches(scene: Scene, plan: EffectPlan, shares: np.ndarray) -> Units:
     return found
 
 
-def _waves(scene: Scene, plan: EffectPlan, shares: np.ndarray) -> Units:
-    found: Units = {}
-    if not plan.on("diffraction"):
-        return found
-    lights = max(len(scene.lights), 1)
-    footprint = 1e6 * footprint_and_triangle(scene, plan.settings, plan.waves)[0]
-    for number, (share, own) in enumerate(zip(shares, plan.waves, strict=False)):
-        for p in own.layers if own is not None else ():
-            layer, count = p.layer, 1.0
-            unit = "diffraction.bands"
-            if layer.distribution == "crosshatch":
-                count = 2.0
-            if layer.distribution in ("random", "worley", "curves"):
-                unit = "diffraction.segments"
-                reach = footprint + REACH * own.wave.coherence_radius
-                dense, length = _laid(scene, number, layer)
-                count = 1.0 + dense * reach * (reach + length)
-            wide = 2.0 if plan.on("diffraction.areaLights") else 1.0
-            found[unit, unit] = found.get((unit, unit), 0.0) + float(share) * count * lights * wide
-    return found
-
-
-def _laid(scene: Scene, number: int, layer: Layer) -> tuple[float, float]:
-    """(scratches a square micrometre, their length [um]) of a layer of a material."""
-    if layer.distribution != "curves":
-        return (layer.density * 1e-6 if layer.density > 0.0 else 1e-4), layer.length
-    area = 0.0
-    for instance in scene.instances:
-        mesh = scene.meshes[instance.mesh]
-        if number in instance.materials and len(mesh.triangles):
-            corners = mesh.points[mesh.triangles] @ instance.transform[:3, :3].T
-            area += 0.5 * float(np.linalg.norm(np.cross(*np.moveaxis(np.diff(corners, axis=1), 1, 0)), axis=-1).sum())
-    side, strokes, whole = 1e6 * math.sqrt(max(area, 1e-20)), 0, 0.0
-    for record in (scene.curves[c] for c in layer.curves):
-        steps = np.linalg.norm(np.diff(record.points, axis=0), axis=1)
-        ends = np.cumsum(record.counts)[:-1] - 1
-        steps[ends[ends < len(steps)]] = 0.0
-        strokes += len(record.counts)
-        whole += float(steps.sum()) * (side if record.space == "uv" else 1e6)
-    return strokes / side**2, whole / max(strokes, 1)
-
-
-def _strokes(scene: Scene, plan: EffectPlan) -> float:
+def _strokes(scene: Scene) -> float:
     return float(sum(len(c.counts) for c in scene.curves))
-
-
-def _grooves(scene: Scene, plan: EffectPlan, shares: np.ndarray) -> Units:
-    found: Units = {}
-    if not plan.on("grooves"):
-        return found
-    crossing = plan.on("grooves.crossings")
-    lines = max(4.0, float(plan.settings.knobs.get("grooves.lines", 48)) / (plan.settings.spp or 1)) if crossing else 1
-    bounces = 1.0
-    if plan.on("grooves.interreflection"):
-        bounces = min(float(plan.settings.knobs.get("grooves.bounces", 8)), 3.0)
-    for share, own in zip(shares, plan.grooves, strict=False):
-        if own is not None:
-            lights = max(len(scene.lights), 1)
-            points = sum(len(p.section) for p in own.layers) / 4.0  # facets under a footprint
-            unit = "grooves.crossings" if crossing else "grooves"
-            paths = ("grooves", "grooves.paths")
-            found[unit, unit] = found.get((unit, unit), 0.0) + float(share) * lights * lines * points
-            found[paths] = found.get(paths, 0.0) + float(share) * bounces * points
-    return found

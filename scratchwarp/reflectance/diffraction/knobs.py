@@ -19,6 +19,16 @@ KNOBS = (
         source=f"{_VELINOV}, Equations 27 and 29",
     ),
     Knob(
+        name="diffraction.slices",
+        values=(1, 2, 4, 8, 16),
+        default=8,
+        error="parts of wide lights, and what they send, blurred along the scratch",
+        sets="glint.slices",
+        effects=("diffraction.areaLights",),
+        limits=(1, 16),
+        quality=(4, 8, 8, 16),
+    ),
+    Knob(
         name="diffraction.footprint",
         values=("point", "paper", "gaussian", "exact"),
         default="gaussian",

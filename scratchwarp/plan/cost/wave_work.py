@@ -1,0 +1,141 @@
+"""What scratches that diffract make the renderer do, counted: pieces near a footprint, scratches in it, and each under
+the lights that its narrow lobe reaches."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from ...scene import (
+    CylinderLight,
+    DiskLight,
+    DistantLight,
+    DomeLight,
+    Instance,
+    Layer,
+    Light,
+    MeshLight,
+    RectLight,
+    Scene,
+    SphereLight,
+)
+from ..choice import EffectPlan
+from ..wave_effects import footprint_and_triangle
+from .footprints import footprints
+
+Units = dict[tuple[str, str], float]
+WIDE = 2.6
+"""Widths of a footprint over which its Gaussian is looked at."""
+SLACK = 0.03
+"""About how far [rad] a lobe reaches where surfaces bend."""
+AROUND = 13.0
+"""Triangles around one, itself counted."""
+WAVELENGTHS = 16.0
+"""That are summed where no table has colours."""
+_FLAT = (RectLight, DiskLight, CylinderLight, MeshLight)
+
+
+def wave_units(scene: Scene, plan: EffectPlan, shares: Sequence[float]) -> Units:
+    """Units a sample; ``shares``: of the image, of each material."""
+    found: Units = {}
+    if not plan.on("diffraction"):
+        return found
+    prints = footprints(scene, plan.size, plan.settings.spp or 1)
+    triangle = 1e6 * footprint_and_triangle(scene, plan.settings, plan.waves)[1]
+    lights = _lights(scene, plan)
+
+    def add(effect: str, unit: str, count: float) -> None:
+        if count > 0.0:
+            found[effect, unit] = found.get((effect, unit), 0.0) + count
+
+    for number, (share, own) in enumerate(zip(shares, plan.waves, strict=False)):
+        for p in own.layers if own is not None and share > 0.0 else ():
+            strands = 2.0 if p.layer.distribution == "crosshatch" else 1.0
+            if p.layer.distribution in ("random", "worley", "curves"):
+                dense, length = laid(scene, number, p.layer)
+                reach, side = WIDE * prints[number].across, 0.6 * triangle
+                piece = min(length, side)  # triangles cut scratches
+                strands = dense * length * reach * (1.0 + 0.6 * reach / max(piece, 1e-12))
+                if plan.on("diffraction.lists") and 4.0 * prints[number].across <= triangle:
+                    near = AROUND * dense * length * side * (1.0 + side / max(piece, 1e-12))
+                else:
+                    near = 1.5 * strands
+                add("diffraction.segments", "diffraction.pieces", share * near)
+                add("diffraction.segments", "diffraction.found", share)
+                add("diffraction.segments", "diffraction.strands", share * strands)
+            else:
+                add("diffraction.bands", "diffraction.bands", share * strands)
+            if plan.on("diffraction.pairs") and own.wave.summation == "coherent":
+                strands *= 0.5 * (strands + 1.0)
+            for unit, count in lights.items():
+                add("diffraction.areaLights" if unit != "diffraction.points" else "diffraction", unit,
+                    share * strands * count)  # fmt: skip
+    return found
+
+
+def laid(scene: Scene, number: int, layer: Layer) -> tuple[float, float]:
+    """(scratches a square micrometre, their length [um]) of a layer of a material."""
+    if layer.distribution != "curves":
+        return (layer.density * 1e-6 if layer.density > 0.0 else 1e-4), layer.length
+    area = 0.0
+    for instance in scene.instances:
+        mesh = scene.meshes[instance.mesh]
+        if number in instance.materials and len(mesh.triangles):
+            corners = mesh.points[mesh.triangles] @ instance.transform[:3, :3].T
+            area += 0.5 * float(np.linalg.norm(np.cross(*np.moveaxis(np.diff(corners, axis=1), 1, 0)), axis=-1).sum())
+    side, strokes, whole = 1e6 * math.sqrt(max(area, 1e-20)), 0, 0.0
+    for record in (scene.curves[c] for c in layer.curves):
+        steps = np.linalg.norm(np.diff(record.points, axis=0), axis=1)
+        ends = np.cumsum(record.counts)[:-1] - 1
+        steps[ends[ends < len(steps)]] = 0.0
+        strokes += len(record.counts)
+        whole += float(steps.sum()) * (side if record.space == "uv" else 1e6)
+    return strokes / side**2, whole / max(strokes, 1)
+
+
+def _lights(scene: Scene, plan: EffectPlan) -> dict[str, float]:
+    """How often one scratch is in reach of lights: unit -> of points (by wavelengths), caps, polygons and domes."""
+    made: dict[str, float] = {}
+    middle = _middle(scene, [i for i in scene.instances if any(plan.waves[m] is not None for m in i.materials)])
+    colors = 1.0 if plan.on("diffraction.distantLookup") else WAVELENGTHS
+    for light in scene.lights:
+        if isinstance(light, DomeLight):
+            made["diffraction.domes"] = made.get("diffraction.domes", 0.0) + 1.0
+            continue
+        half, polygons = _half_angle(scene, light, middle)
+        unit = "diffraction.polygons" if isinstance(light, _FLAT) else "diffraction.caps"
+        count = min(1.0, half + SLACK) * polygons
+        if half <= 0.0:
+            unit, count = "diffraction.points", SLACK * colors
+        made[unit] = made.get(unit, 0.0) + count
+    return made
+
+
+def _half_angle(scene: Scene, light: Light, middle: np.ndarray) -> tuple[float, int]:
+    """(half the angle that a light fills from ``middle``, its polygons)."""
+    polygons, radius = 1, 0.0
+    if isinstance(light, DistantLight):
+        return 0.5 * light.angle, 1
+    if isinstance(light, MeshLight):
+        instance = scene.instances[light.instance]
+        mesh = scene.meshes[instance.mesh]
+        points = mesh.points @ instance.transform[:3, :3].T + instance.transform[:3, 3]
+        center, polygons = points.mean(axis=0), len(mesh.triangles)
+        radius = float(np.linalg.norm(points - center, axis=1).max())
+    elif isinstance(light, SphereLight):
+        center, radius = light.center, 0.0 if light.point else light.radius
+    elif isinstance(light, CylinderLight):
+        center, radius = light.center, light.radius + float(np.linalg.norm(light.axis))
+    elif isinstance(light, RectLight | DiskLight):
+        center, radius = light.center, float(np.linalg.norm(light.ex) + np.linalg.norm(light.ey))
+    else:
+        return 0.0, 1
+    away = float(np.linalg.norm(np.asarray(center, float) - middle))
+    return math.asin(min(1.0, radius / max(away, 1e-12))), polygons
+
+
+def _middle(scene: Scene, instances: Sequence[Instance]) -> np.ndarray:
+    """The middle of surfaces, in the world."""
+    points = [i.transform[:3, 3] + i.transform[:3, :3] @ scene.meshes[i.mesh].points.mean(axis=0) for i in instances
+              if len(scene.meshes[i.mesh].points)]  # fmt: skip
+    return np.mean(points, axis=0) if points else np.zeros(3)
