@@ -250,7 +250,9 @@ def assemble(
     sliced = sorted((turned(knobs, "wave") | turned(knobs, "glint")).items())
     sparkle = parts.part(
         "glints",
-        (digest(scene.materials, key, waved, sliced), scene.curves, scene.meshes, scene.textures, placed) if key.glints else (),
+        (digest(scene.materials, key, waved, sliced), scene.curves, scene.meshes, scene.textures, placed)
+        if key.glints
+        else (),
         lambda: glints.pack(scene, plan, key, shape, device),
     )
     scratch_set.glints = sparkle.arrays

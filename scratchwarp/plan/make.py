@@ -10,17 +10,20 @@ from ..reflectance.profile_table import table_bytes
 from ..reflectance.responses import RESPONSES
 from ..scene import Layer, Material, Scene, Settings
 from .choice import EffectChoice, EffectPlan, LayerPlan, ResponsePlan, TablePlan
-from .cost.aim import aim
+from .cost.aim import aim, suited
 from .cost.shares import shares
 from .coverage import baked_thresholds
 from .effects import EFFECTS, Facts, sampled_lights
 from .grooves import laid_out, mark_near, plan_grooves, refracts
-from .knobs import checked, turned_tables
+from .knobs import by_quality, checked, turned_tables
 from .layers import mean_color, plan_layers, reflector
 from .models import base_responses
 from .nearby import SMOOTH_BASE, near_layers
 from .resolve import resolve
 from .waves import complaints, diffracts, plan_waves, wide_ones
+
+MODELLED = ("draft", "preview", "final")
+"""Qualities whose knobs are chosen by what they cost and leave; reference takes the most of all."""
 
 Layers = tuple[tuple[LayerPlan, ...], ...]
 
@@ -37,15 +40,14 @@ def make_plan(scene: Scene, settings: Settings | None = None, earlier: EffectPla
     given = {**dict(scene.options.knobs), **settings.knobs}
     if plan.settings.max_error is not None and settings.quality is None:
         plan = _aimed(scene, settings, plan, given)
+    elif plan.settings.quality in MODELLED:
+        plan = _suited(scene, settings, plan, given)
     return replace(plan, seconds=time.perf_counter() - start)
 
 
 def _aimed(scene: Scene, settings: Settings, plan: EffectPlan, given: Mapping[str, Any]) -> EffectPlan:
     """The plan with all knobs chosen for its error that are not ``given`` in some way."""
-    fields = {"spp": settings.spp, "pathDepth": settings.max_depth, "lights.coneTaps": settings.cone_taps}
-    given = {**{n: v for n, v in fields.items() if v is not None}, **checked(given)}
-    if scene.options.max_depth is not None:
-        given.setdefault("pathDepth", scene.options.max_depth)
+    given = _given(scene, settings, given)
     asked: Any = given.get("spp")
     found = aim(scene, plan, given, asked)
     knobs = {**found.knobs, **settings.knobs}
@@ -57,6 +59,30 @@ def _aimed(scene: Scene, settings: Settings, plan: EffectPlan, given: Mapping[st
         text += f", of {found.error:g} asked for: about {found.bias:.2g} is what knobs may leave"
     text += f"; {found.combinations} combinations of {', '.join(found.knobs) or 'no knobs'} compared"
     return replace(made, aim=found, numbers={**made.numbers, "error": text})
+
+
+def _suited(scene: Scene, settings: Settings, plan: EffectPlan, given: Mapping[str, Any]) -> EffectPlan:
+    """The plan with all knobs that no one turned as they go with its quality."""
+    spp = int(by_quality(plan.settings.quality)["spp"])
+    found = suited(scene, plan, _given(scene, settings, given), spp)
+    text = f"{plan.settings.quality}, {spp} samples unless others are asked for"
+    if found.knobs:
+        made = _planned(scene, replace(settings, knobs={**found.knobs, **settings.knobs}), plan)
+        text += (
+            f"; of {found.combinations} combinations of {', '.join(found.knobs)} the cheapest that leaves less than "
+            f"{found.most:.2g}, a sixteenth of the noise of so many samples: about {found.bias:.2g}"
+        )
+        plan = replace(made, settings=replace(made.settings, spp=plan.settings.spp))
+    return replace(plan, numbers={**plan.numbers, "quality": text})
+
+
+def _given(scene: Scene, settings: Settings, knobs: Mapping[str, Any]) -> dict[str, Any]:
+    """Knobs that were turned in some way."""
+    fields = {"spp": settings.spp, "pathDepth": settings.max_depth, "lights.coneTaps": settings.cone_taps}
+    given = {**{n: v for n, v in fields.items() if v is not None}, **checked(knobs)}
+    if scene.options.max_depth is not None:
+        given.setdefault("pathDepth", scene.options.max_depth)
+    return given
 
 
 def _planned(scene: Scene, settings: Settings, earlier: EffectPlan | None) -> EffectPlan:

@@ -160,7 +160,7 @@ WAVE_EFFECTS: dict[str, Callable[[Any], Answer]] = {
     "diffraction.exactFootprint": _never("Gaussian footprints; on: ellipses, integrated across the scratch"),
     "diffraction.paperFootprint": _never("Gaussian footprints; on: ellipses by Velinov 2018 Eq. 15 and 16, mended"),
     "diffraction.pointFootprint": _never("Gaussian footprints; on: the sample's point alone, nothing antialiases"),
-    "diffraction.closedForm": _never("lights in 8 slices; on: the slice xi_1 = 0 alone (Velinov 2018 Eq. 27)"),
+    "diffraction.closedForm": _never("lights in slices; on: the slice xi_1 = 0 alone (Velinov 2018 Eq. 27)"),
     "diffraction.paperLights": _never("exact sine integral; on: Velinov 2018 Eq. 27 with Eq. 29"),
 }
 """Effect -> its rule."""

@@ -19,7 +19,8 @@ AOVS = {
     "scratches": "radiance reflected by scratches",
     "emission": "radiance of lights and glowing surfaces that the camera sees directly",
     "variance": "estimated variance of the mean luminance",
-    "error": "estimated standard error of the luminance: how far more samples would move it",
+    "error": "estimated standard error of the luminance: how far more samples would move it; with an error target on "
+    "the scale of the estimate that ended the render",
 }
 
 
@@ -29,7 +30,8 @@ class Film(Mapping[str, np.ndarray]):
 
     Attributes:
         aovs: the arrays. stats: seconds read, plan, simulate, compile, trace, write and counts rays, samples,
-            error (estimated relMSE by noise), halving (about how many seconds more half of it takes),
+            error (estimated relMSE), bias (of it what knobs leave, predicted, 0 without a target), halving (about how
+            many seconds more half of it takes),
             kernels_compiled, kernels_launched, tables_simulated, invalid_samples.
         metadata: header entries for image files.
         full_size: (width, height) of the whole image; crop: (x0, x1, y0, y1) that the arrays cover, maxima exclusive.

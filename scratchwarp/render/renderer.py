@@ -22,7 +22,7 @@ from .interrupt import Control
 from .launch import loaded
 from .progress import Progress, silent
 from .tables import simulate_tables
-from .target import MOST, noted, says, until
+from .target import MOST, halving, noted, on_scale, says, until
 from .trace import Job, Threads, Tracer
 
 if TYPE_CHECKING:
@@ -111,7 +111,8 @@ def render(
             "tables_simulated": tables_simulated,
             "invalid_samples": invalid,
             "error": error,
-            "halving": ended - compiled,
+            "bias": left,
+            "halving": halving(ended - compiled, error, left, 2.0 if plan.aim is None else plan.aim.halved),
             **trace.numbers,
         }
         seconds = time.process_time() - cpu + trace.cpu
@@ -150,5 +151,8 @@ def render(
         Path(checkpoint).unlink(missing_ok=True)
     traced = time.perf_counter()
     made = film(samples, error, traced)
+    if limit is not None:
+        scaled = on_scale(made["variance"], made["color"], error - left)
+        made = replace(made, aovs={**made.aovs, "error": scaled})
     said = says(settings.max_error, samples, error, traced - compiled, left)
     return replace(made, warnings=made.warnings + said)

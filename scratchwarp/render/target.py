@@ -43,6 +43,27 @@ def remaining(sums: Mapping[str, Any], samples: int, before: tuple[np.ndarray, i
     return max(float(off.mean() + 0.5 * off.std() / np.sqrt(off.size)) for off in (alone, together))
 
 
+def on_scale(variance: np.ndarray, color: np.ndarray, noise: float) -> np.ndarray:
+    """Standard error of each pixel's luminance, [h, w], on the scale of the estimate ``noise`` that ended a render: the
+    mean of its square over that of the luminance of ``color``, ``FLOOR`` of the squared mean luminance added, is
+    ``noise``. ``variance`` [h, w]: of the pixels' luminance, from the spread of their samples."""
+    mean = np.asarray(color, np.float64) @ _LUMINANCE
+    relative = float((variance / np.maximum(mean**2 + FLOOR * float(mean.mean()) ** 2, 1e-300)).mean())
+    scale = noise / relative if np.isfinite(noise) and relative > 0.0 else 1.0
+    return np.asarray(np.sqrt(variance * scale), np.float32)
+
+
+def halving(seconds: float, error: float, left: float = 0.0, longer: float = 2.0) -> float:
+    """About how many seconds more half of ``error`` takes, ``left`` of which more samples do not cure; where they
+    cannot do it, those of a render with other knobs, ``longer`` times as long as one as it was planned."""
+    noise = error - left
+    if not np.isfinite(error):
+        return seconds
+    if noise <= 0.0 or 0.5 * error - left <= 0.1 * noise:
+        return longer * seconds
+    return seconds * (noise / (0.5 * error - left) - 1.0)
+
+
 def luminance(sums: Mapping[str, Any], samples: int) -> np.ndarray:
     """Mean luminance of each pixel, [h, w]."""
     return np.asarray(sums["color"], np.float64) @ _LUMINANCE / _good(sums, samples)
@@ -149,7 +170,7 @@ def says(target: float | None, samples: int, error: float, seconds: float, left:
     if target is None or error <= target * (1.0 + 1e-9):
         return ()
     if left > 0.5 * target:
-        hint = f"about {left:.2g} of it is what the knobs that were turned leave: turn them up"
+        hint = f"about {left:.2g} of it is what the knobs leave: turn up those that were turned"
     else:
         hint = "begin with more samples"
     return (f"max_error {target:g} was not reached: {reached(samples, error, seconds)}; {hint}",)

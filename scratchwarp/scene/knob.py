@@ -20,8 +20,8 @@ class Knob:
         error: what goes wrong at cheap values, a phrase; ``source``: where the method is described.
         effects: it acts only where one of these is on; none: everywhere.
         sets: what a value goes to: ``settings.FIELD``, ``table.FIELD`` of every ``TablePlan``, ``wave.FIELD`` of what
-            diffracts, ``camera.FIELD``, ``groove.FIELD`` and ``glint.FIELD`` of what is built for them; "" for ``switches``: value ->
-            effects that it forces on or off.
+            diffracts, ``camera.FIELD``, ``groove.FIELD`` and ``glint.FIELD`` of what is built for them; "" for
+            ``switches``: value -> effects that it forces on or off.
         limits: least and greatest value of a number; other numbers than ``values`` may be asked for between them.
         quality: values for draft, preview, final and reference; none: the default for all of them.
         noise: the error is noise, which falls with samples; otherwise samples do not cure it.

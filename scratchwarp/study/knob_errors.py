@@ -23,7 +23,7 @@ from .measures import rel_mse, weights
 
 MEASURED = (
     "tables.resolution", "tables.rays", "tables.bounces", "lights.coneTaps", "pathDepth", "grooves.lines",
-    "grooves.bounces", "diffraction.wavelengths",
+    "grooves.bounces", "diffraction.wavelengths", "diffraction.slices",
 )  # fmt: skip
 """Knobs that a target may turn: each costs the more the more accurate it is."""
 SHARE = 0.8

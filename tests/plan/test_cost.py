@@ -8,10 +8,12 @@ import pytest
 
 import scratchwarp as sw
 from scratchwarp.plan.cost import forecast, models
-from scratchwarp.plan.cost.aim import BIAS_SHARE, aim, wanted
+from scratchwarp.plan.cost.aim import BIAS_SHARE, QUALITY_SHARE, aim, suited, wanted
+from scratchwarp.plan.cost.footprints import footprints
 from scratchwarp.plan.cost.models import Costs, Errors
 from scratchwarp.plan.cost.visible import visible
 from scratchwarp.plan.cost.work import of_table, work
+from scratchwarp.scene import DistantLight, Wave
 
 from ..render import scenes as S
 
@@ -133,3 +135,57 @@ def test_shipped_errors_fall_from_value_to_value():
     for name, values in left.bias.items():
         assert np.all(np.diff(list(values.values())) <= 0.0), name
         assert list(values.values())[-1] == 0.0, name
+
+
+def test_a_quality_leaves_a_part_of_its_noise_at_the_lowest_price():
+    made = plan(quality="preview")
+    found = suited(world(), made, {}, 16, ONE, LEFT)
+    assert found.most == pytest.approx(QUALITY_SHARE * 0.5 / 16) and found.bias <= found.most
+    assert found.knobs == {"tables.resolution": 256, "tables.rays": 512}  # 0.001 and 0 of 0.00195
+    assert suited(world(), made, {}, 4, ONE, LEFT).knobs["tables.resolution"] in (128, 256)
+    assert suited(world(), made, {"tables.resolution": 64}, 16, ONE, LEFT).knobs == {"tables.rays": 512}
+    elsewhere = replace(world(), camera=S.camera(focal=0.2))
+    assert suited(elsewhere, sw.make_plan(elsewhere, sw.Settings(width=64, height=64)), {}, 16, ONE, LEFT) == found
+
+
+SUN = DistantLight(path="/sun", radiance=np.ones(3), direction=np.array([0.3, 0.0, -0.954]))
+GROOVE = replace(S.scratched().layers[0], distribution="linear", width=400.0, depth=100.0, pitch=800.0, model="groove")
+
+
+def grooved(*layers, **settings):
+    scene = S.scene([S.plane()], [replace(S.scratched(), layers=layers)], [SUN])
+    made = sw.make_plan(scene, sw.Settings(**{"width": 64, "height": 64, "threads": 1, "spp": 4, **settings}))
+    return work(scene, made)
+
+
+def test_grooves_cost_by_what_lies_under_a_footprint():
+    """Twice as dense, twice the facets a line; crossing ones take as many lines as asked for, parallel ones one."""
+    one = grooved(GROOVE).each["grooves", "grooves.lineFacets"]
+    two = grooved(replace(GROOVE, pitch=400.0)).each["grooves", "grooves.lineFacets"]
+    assert 1.5 < two / one < 3.0
+    crossed = replace(GROOVE, name="cross", distribution="crosshatch")
+    few, many = (grooved(crossed, knobs={"grooves.lines": n}).each["grooves.crossings", "grooves.lines"]
+                 for n in (48, 192))  # fmt: skip
+    assert many == pytest.approx(4.0 * few, rel=1e-6) and few > 5.0 * grooved(GROOVE).each["grooves", "grooves.lines"]
+
+
+def test_a_footprint_is_a_part_of_a_pixel():
+    """At 6 m, 20 mm of aperture at 50 mm over 64 pixels: 37.5 mm a pixel, seen head-on, a fourth of it for 16."""
+    scene = S.scene([S.plane()], [S.scratched()], [S.dome()])
+    found, = footprints(scene, (64, 64), 16)
+    assert found.edge == pytest.approx(1e6 * 0.0375 / 4, rel=0.05) and found.stretch == pytest.approx(1.0, abs=0.05)
+    assert found.area == pytest.approx(1e12 * 4.0, rel=1e-6)
+
+
+def test_scratches_that_diffract_cost_by_the_lights_that_they_see():
+    layer = replace(S.scratched().layers[0], distribution="random", density=1.0, width=2.0, depth=0.5)
+
+    def units(light, **knobs):
+        scene = S.scene([S.plane()], [replace(S.scratched(), wave=Wave(), layers=(layer,))], [light])
+        return work(scene, sw.make_plan(scene, sw.Settings(width=64, height=64, spp=4, knobs=knobs))).each
+
+    area = "diffraction.areaLights"
+    dome, few = units(S.dome()), units(S.dome(), **{"diffraction.slices": 2})
+    assert dome[area, "diffraction.domes"] > few[area, "diffraction.domes"] > 0.0
+    assert units(SUN)["diffraction", "diffraction.points"] > 0.0
+    assert dome["diffraction.segments", "diffraction.strands"] > 0.0

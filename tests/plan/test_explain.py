@@ -47,9 +47,10 @@ def test_prims_are_named_three_at_most():
 def test_numbers_and_warnings_follow():
     plan = sw.make_plan(
         S.scene([S.sphere(8, 16)], [S.scratched()], [S.dome()]),
-        sw.Settings(width=64, spp=3, max_error=0.02, quality="preview"),
+        sw.Settings(width=64, spp=3, max_error=0.02, quality="preview", knobs={"tables.resolution": 256}),
     )
     text = plan.explain()
+    assert "quality: preview, 16 samples unless others are asked for; of " in text
     assert "image: 64 x 64 pixels" in text and "3 samples each" in text
     assert "memory: 1.6 MB of tables; 0 segments" in text  # a mirror of 256 x 256 cells, 24 bytes each
     assert f"geometry: {len(S.sphere(8, 16).triangles)} triangles in 1 instances" in text

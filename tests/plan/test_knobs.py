@@ -44,6 +44,35 @@ def test_every_value_of_a_knob_changes_the_plan(name):
     assert all(found.count(one) == 1 for one in found)
 
 
+APPROXIMATIONS = {
+    "table resolution": "tables.resolution",
+    "rays": "tables.rays",
+    "sampler": "tables.sampler",
+    "bounces": "tables.bounces",
+    "bounces in grooves": "grooves.bounces",
+    "theta model": "tables.theta",
+    "wavelengths": "diffraction.wavelengths",
+    "look-up tables": "diffraction.colors",
+    "light slices": "diffraction.slices",
+    "light samples along cones": "lights.coneTaps",
+    "footprint method": "diffraction.footprint",
+    "coverage filter": "scratches.coverageFilter",
+    "segment lookup": "diffraction.segmentLookup",
+    "groove ellipse or axis": "grooves.footprint",
+    "stencil far field": "scratches.farField",
+    "path depth": "pathDepth",
+    "samples a pixel": "spp",
+}
+
+
+def test_every_approximation_has_a_knob():
+    """Each with a way from cheap to the reference, and something that it acts on."""
+    for what, name in APPROXIMATIONS.items():
+        assert name in KNOBS, what
+        knob = KNOBS[name]
+        assert len(set(knob.values)) == len(knob.values) >= 2 and knob.reference == knob.values[-1], what
+
+
 @pytest.mark.parametrize("name", list(KNOBS))
 def test_declarations_hold_together(name):
     knob = KNOBS[name]
@@ -112,7 +141,13 @@ def test_the_stage_turns_knobs_and_the_user_goes_before_it():
 
 def test_a_quality_turns_all_knobs_that_are_not_turned_otherwise():
     draft, final = plan(quality="draft"), plan(quality="final", knobs={"tables.rays": 16})
-    assert (draft.settings.spp, draft.tables[0].resolution, draft.settings.cone_taps) == (4, 128, 4)
+    assert (draft.settings.spp, draft.settings.cone_taps) == (4, 4)
+    preview, best = plan(quality="preview"), plan(quality="reference")
+    bins = [made.tables[0].resolution for made in (draft, preview, final, best)]
+    assert bins == sorted(bins) and bins[0] < bins[2] < bins[3] == 512  # by the models; reference takes the most
+    assert "combinations" in draft.numbers["quality"] and "quality" not in best.numbers
+    part = plan(quality="draft", crop=(0.0, 0.5, 0.0, 0.5))
+    assert (part.tables[0].resolution, part.tables[0].rays) == (draft.tables[0].resolution, draft.tables[0].rays)
     assert (final.settings.spp, final.tables[0].rays) == (128, 16)
     assert plan(quality="final", spp=3).settings.spp == 3
     assert by_quality(None) == {}

@@ -64,8 +64,8 @@ def footprints(scene: Scene, size: tuple[int, int], spp: int) -> list[Print]:
         np.add.at(sums[:, 3], owners, step * area)
     made = []
     for weight, edge, stretch, area in sums:
-        known = weight > 0.0
-        made.append(Print(1e6 * pixel * edge / weight if known else 0.0, stretch / weight if known else 1.0, 1e12 * area))
+        mean, long = (edge / weight, stretch / weight) if weight > 0.0 else (0.0, 1.0)
+        made.append(Print(1e6 * pixel * mean, long, 1e12 * area))
     return made
 
 

@@ -20,6 +20,7 @@ from ...scene import (
     SphereLight,
 )
 from ..choice import EffectPlan
+from ..knobs import value
 from ..wave_effects import footprint_and_triangle
 from .footprints import footprints
 
@@ -32,6 +33,8 @@ AROUND = 13.0
 """Triangles around one, itself counted."""
 WAVELENGTHS = 16.0
 """That are summed where no table has colours."""
+DOME = 8.0
+"""What a dome takes besides its parts, in parts; seven are usual."""
 _FLAT = (RectLight, DiskLight, CylinderLight, MeshLight)
 
 
@@ -100,7 +103,8 @@ def _lights(scene: Scene, plan: EffectPlan) -> dict[str, float]:
     colors = 1.0 if plan.on("diffraction.distantLookup") else WAVELENGTHS
     for light in scene.lights:
         if isinstance(light, DomeLight):
-            made["diffraction.domes"] = made.get("diffraction.domes", 0.0) + 1.0
+            parts = max(int(value(plan.settings.knobs, "diffraction.slices")) - 1, 1)
+            made["diffraction.domes"] = made.get("diffraction.domes", 0.0) + (DOME + parts) / (DOME + 7.0)
             continue
         half, polygons = _half_angle(scene, light, middle)
         unit = "diffraction.polygons" if isinstance(light, _FLAT) else "diffraction.caps"
