@@ -166,9 +166,10 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
     if key.glint_footprint in ("exact", "paper"):
         arrays.rules = rules((16,))
     arrays.slices = int(value(plan.settings.knobs, "diffraction.slices"))
-    at, weights = np.polynomial.legendre.leggauss(arrays.slices)
-    nodes = np.stack([0.5 * (1.0 + at), 0.5 * weights], axis=1)
-    arrays.nodes = wp.array(nodes.astype(np.float32), dtype=wp.vec2, device=device)
+    if key.glint_areas:
+        at, weights = np.polynomial.legendre.leggauss(arrays.slices)
+        nodes = np.stack([0.5 * (1.0 + at), 0.5 * weights], axis=1)
+        arrays.nodes = wp.array(nodes.astype(np.float32), dtype=wp.vec2, device=device)
     if key.glint_fringes:
         arrays.fringes = wp.array(fringes(), dtype=wp.vec3, device=device)
     if strokes:
