@@ -7,7 +7,7 @@ corners need no rule of their own.
 
 import warp as wp
 
-from .solid_device import GrooveSet, Piece, flat, in_stretch, is_solid, piece_at
+from .solid_device import GROUP, GrooveSet, Piece, box_of, flat, grouped, in_stretch, is_solid, piece_at
 from .taper_device import meets_facet, meets_opening, normal_at
 
 wp.set_module_options({"enable_backward": False})
@@ -17,12 +17,13 @@ wp.set_module_options({"enable_backward": False})
 class Crossing:
     """Where a ray meets a surface: distance in units of the ray's direction (infinite: nowhere), unit normal, piece.
 
-    ``piece`` is -1 on the ground.
+    ``piece`` is -1 on the ground; ``facet`` the first vertex of the piece's facet, -1 on walls and on the ground.
     """
 
     distance: wp.float64
     normal: wp.vec3d
     piece: int
+    facet: int
 
 
 @wp.func
@@ -66,6 +67,25 @@ def passes_by(
 
 
 @wp.func
+def stride_past(
+    grooves: GrooveSet, piece: Piece, j: int, x: wp.float64, z: wp.float64, dx: wp.float64, dz: wp.float64
+) -> int:  # fmt: skip
+    """How many facets from vertex ``j`` on lie on one side of the line (x, z) + t (dx, dz); 0 where that is unknown."""
+    result = int(0)
+    if grouped(piece) and (j - piece.first) % GROUP == 0:
+        box = box_of(grooves.vertices, piece, j)
+        x0 = (box[0] - x) * dz
+        x1 = (box[2] - x) * dz
+        z0 = (box[1] - z) * dx
+        z1 = (box[3] - z) * dx
+        low = wp.min(x0, x1) - wp.max(z0, z1)
+        high = wp.max(x0, x1) - wp.min(z0, z1)
+        if low > wp.float64(0.0) or high <= wp.float64(0.0):
+            result = GROUP
+    return result
+
+
+@wp.func
 def cast(
     grooves: GrooveSet, ids: wp.array(dtype=int), count: int, p: wp.vec3d, d: wp.vec3d, limit: wp.float64,
     anything: int, inside: int,
@@ -79,6 +99,7 @@ def cast(
     hit = Crossing()
     hit.distance = wp.float64(wp.inf)
     hit.piece = -1
+    hit.facet = -1
     best = limit
     side = wp.float64(1 - 2 * inside)
     xy = flat(p)
@@ -96,12 +117,25 @@ def cast(
         x = wp.dot(r, piece.across)
         dx = wp.dot(dxy, piece.across)
         last = piece.first + piece.count - 1
-        if passes_by(piece, x, p[2], dx, d[2], best):
+        if passes_by(piece, x, p[2], dx, d[2], best) or (anything == 1 and best == zero):
             last = piece.first
-        for j in range(piece.first, last):
+        j = int(piece.first)
+        while j < last:
+            on = int(0)
+            if grooves.mixed == 0:
+                on = stride_past(grooves, piece, j, x, p[2], dx, d[2])
+            # on which side of the ray each vertex lies; a facet is met where that changes
             v = grooves.vertices[j]
-            e = grooves.vertices[j + 1] - v
-            if piece.taper >= 0 and (v[1] != zero or e[1] != zero) and not (anything == 1 and best == zero):
+            w = v
+            was = zero
+            aside = zero
+            if on == 0:
+                w = grooves.vertices[j + 1]
+                was = (v[0] - x) * d[2] - (v[1] - p[2]) * dx
+                aside = (w[0] - x) * d[2] - (w[1] - p[2]) * dx
+                on = 1
+            if piece.taper >= 0 and (v[1] != zero or w[1] != zero) and not (anything == 1 and best == zero):
+                e = w - v
                 t = meets_facet(grooves, piece, v, e, r, dxy, p[2], d[2], side)
                 if t > zero and t < best and in_stretch(piece, r + t * dxy, wp.float64(0.25) * grooves.skin):
                     n = normal_at(grooves, piece, e, r + t * dxy, p[2] + t * d[2])
@@ -109,27 +143,21 @@ def cast(
                         hit.distance = t
                         hit.normal = n
                         hit.piece = ids[a]
+                        hit.facet = j
                         best = t
-            facing = e[0] * d[2] - e[1] * dx
-            if (
-                piece.taper < 0
-                and side * facing < zero
-                and (v[1] != zero or e[1] != zero)
-                and not (anything == 1 and best == zero)
-            ):
-                t = (e[0] * (v[1] - p[2]) - e[1] * (v[0] - x)) / facing
-                if t > zero and t < best:
-                    w = (x + t * dx - v[0]) * e[0] + (p[2] + t * d[2] - v[1]) * e[1]
-                    e2 = wp.dot(e, e)
-                    if w >= wp.float64(-1e-12) * e2 and w <= wp.float64(1.0 + 1e-12) * e2:
-                        if in_stretch(piece, r + t * dxy, wp.float64(0.25) * grooves.skin):
-                            m = e / wp.sqrt(e2)
-                            n = wp.vec3d(-m[1] * piece.across[0], -m[1] * piece.across[1], m[0])
-                            if is_surface(grooves, ids, count, p + t * d, n):
-                                hit.distance = t
-                                hit.normal = n
-                                hit.piece = ids[a]
-                                best = t
+            if piece.taper < 0 and (was > zero) != (aside > zero) and side * (aside - was) < zero:
+                if (v[1] != zero or w[1] != zero) and not (anything == 1 and best == zero):
+                    e = w - v
+                    t = (e[0] * (v[1] - p[2]) - e[1] * (v[0] - x)) / (aside - was)
+                    if t > zero and t < best and in_stretch(piece, r + t * dxy, wp.float64(0.25) * grooves.skin):
+                        m = e / wp.length(e)
+                        n = wp.vec3d(-m[1] * piece.across[0], -m[1] * piece.across[1], m[0])
+                        if is_surface(grooves, ids, count, p + t * d, n):
+                            hit.distance = t
+                            hit.normal = n
+                            hit.piece = ids[a]
+                            hit.facet = j
+                            best = t
             if grooves.mixed == 1 and v[1] == zero and (dx != zero or piece.taper >= 0):
                 # the wall that an opening cuts into what other pieces pile up
                 m = piece.across
@@ -146,7 +174,9 @@ def cast(
                         hit.distance = t
                         hit.normal = n
                         hit.piece = ids[a]
+                        hit.facet = -1
                         best = t
+            j += on
         for end in range(2):
             m = wp.where(end == 0, piece.end0, piece.end1)
             reach = wp.where(end == 0, piece.reach0, piece.reach1)
@@ -160,6 +190,7 @@ def cast(
                         hit.distance = t
                         hit.normal = n
                         hit.piece = ids[a]
+                        hit.facet = -1
                         best = t
         if anything == 1 and hit.distance < limit:
             best = zero

@@ -12,17 +12,13 @@ from typing import Any
 
 import warp as wp
 
-from .cast_device import cast, path_of
-from .edges_device import EVENTS, Line, gather_edges
+from .line_device import CHORD, PI, UNIFORM, FootprintMean, make_line_mean, slope_of
 from .solid_device import GrooveSet, Piece, piece_at
 
 wp.set_module_options({"enable_backward": False})
 
-PI = wp.constant(wp.float64(3.14159265358979323846))
-UNIFORM = wp.constant(0)  # weight along a line: even, or by the area of the ellipse over it
-CHORD = wp.constant(1)
-
 PIECES = wp.constant(8)  # a line is cut into as many parts as there are times so many pieces
+FACETS = wp.constant(96)  # and no fewer than times so many facets
 MOST = wp.constant(64)  # pieces of one part; where more touch it, all of them are tried
 TRIED = wp.constant(16)  # directions of lines compared
 
@@ -34,20 +30,6 @@ class Footprint:
     center: wp.vec2d
     a1: wp.vec2d
     a2: wp.vec2d
-
-
-@wp.struct
-class FootprintMean:
-    """Mean radiance, and the share of the footprint in which a surface was found (1 but for rounding)."""
-
-    radiance: wp.vec3d
-    found: wp.float64
-
-
-@wp.func
-def slope_of(d: wp.vec3d) -> wp.vec2d:
-    """(d_x, d_y) / d_z."""
-    return wp.vec2d(d[0] / d[2], d[1] / d[2])
 
 
 @wp.func
@@ -103,17 +85,6 @@ def passes_through(grooves: GrooveSet, piece: Piece, f: Footprint, slope_o: wp.v
 
 
 @wp.func
-def weight_below(b: wp.float64, weighting: int) -> wp.float64:
-    """Share of a line's weight below b in [-1, 1]."""
-    one = wp.float64(1.0)
-    result = wp.float64(0.5) * (b + one)
-    if weighting == CHORD:
-        q = wp.clamp(b, -one, one)
-        result = wp.float64(0.5) + (wp.asin(q) + q * wp.sqrt((one - q) * (one + q))) / PI
-    return result
-
-
-@wp.func
 def direction_of_lines(
     grooves: GrooveSet, ids: wp.array(dtype=int), count: int, f: Footprint, slope_o: wp.vec2d, slope_i: wp.vec2d
 ) -> wp.vec2d:  # fmt: skip
@@ -166,103 +137,7 @@ def make_footprint_mean(Material: Any, radiance: Any, crossings: bool = True, ta
     all run in parallel and end nowhere near; ``tapers`` False: for grooves that do not change along themselves.
     """
 
-    @wp.func
-    def line_mean(
-        grooves: GrooveSet, ids: wp.array(dtype=int), count: int, base: wp.vec2d, step: wp.vec2d, weighting: int,
-        start: wp.float64, stop: wp.float64, o: wp.vec3d, i: wp.vec3d, material: Material,
-    ) -> FootprintMean:  # fmt: skip
-        zero = wp.float64(0.0)
-        one = wp.float64(1.0)
-        half = wp.float64(0.5)
-        result = FootprintMean()
-        slope_o = slope_of(o)
-        slope_i = slope_of(i)
-        seen_edges = wp.zeros(shape=EVENTS, dtype=wp.float64)
-        light_edges = wp.zeros(shape=EVENTS, dtype=wp.float64)
-        above = grooves.top + wp.float64(1.0e6) * grooves.skin
-        view = Line()
-        view.base = base
-        view.step = step
-        view.slope = slope_o
-        b = start
-        while b < stop:
-            seen_count = gather_edges(grooves, ids, count, view, b, stop, seen_edges)
-            for j in range(seen_count + 1):
-                b1 = stop
-                if j < seen_count:
-                    b1 = seen_edges[j]
-                weight = weight_below(b1, weighting) - weight_below(b, weighting)
-                # of too many edges the last is where the next ones are asked for
-                if (j < EVENTS) and weight > wp.float64(1e-14):
-                    middle = half * (b + b1)
-                    x = base + middle * step
-                    top = wp.vec3d(x[0] + above * slope_o[0], x[1] + above * slope_o[1], above)
-                    down = wp.vec3d(-slope_o[0], -slope_o[1], -one)
-                    hit = cast(grooves, ids, count, top, down, wp.float64(wp.inf), 0, 0)
-                    if hit.distance < wp.float64(wp.inf):
-                        result.found += weight
-                        n = hit.normal
-                        q = top + hit.distance * down
-                        bent = bool(False)  # a facet that may be twisted: looked at anew in every part
-                        if wp.static(tapers):
-                            if hit.piece >= 0:
-                                bent = piece_at(grooves, hit.piece).taper >= 0
-                        if (wp.dot(n, i) > zero or bent) and i[2] > wp.float64(1e-9):
-                            # z = at + b' rise on the plane; then the line as the light sees it
-                            facing = -wp.dot(n, down)
-                            rise = -(n[0] * step[0] + n[1] * step[1]) / facing
-                            at = q[2] - middle * rise
-                            light = Line()
-                            light.base = base + at * (slope_o - slope_i)
-                            light.step = step + rise * (slope_o - slope_i)
-                            light.slope = slope_i
-                            lit = zero
-                            c = b
-                            while c < b1:
-                                light_count = gather_edges(grooves, ids, count, light, c, b1, light_edges)
-                                for k in range(light_count + 1):
-                                    c1 = b1
-                                    if k < light_count:
-                                        c1 = light_edges[k]
-                                    part = weight_below(c1, weighting) - weight_below(c, weighting)
-                                    if (k < EVENTS) and part > wp.float64(1e-14):
-                                        m = half * (c + c1)
-                                        z = at + m * rise
-                                        y = base + m * step + z * slope_o
-                                        p = wp.vec3d(y[0], y[1], z)
-                                        here = n
-                                        if wp.static(tapers):
-                                            if bent:
-                                                v = base + m * step
-                                                rise_o = above * slope_o
-                                                eye = wp.vec3d(v[0] + rise_o[0], v[1] + rise_o[1], above)
-                                                again = cast(grooves, ids, count, eye, down, wp.float64(wp.inf), 0, 0)
-                                                if again.distance < wp.float64(wp.inf):
-                                                    here = again.normal
-                                                    p = eye + again.distance * down
-                                                    z = p[2]
-                                        p += wp.float64(2.0) * grooves.skin * here
-                                        up = wp.vec3d(slope_i[0], slope_i[1], one)
-                                        limit = grooves.top - z + grooves.skin
-                                        clear = bool(wp.dot(here, i) > zero)
-                                        if clear:
-                                            dark = cast(grooves, ids, count, p, up, limit, 1, 0)
-                                            clear = dark.distance == wp.float64(wp.inf)
-                                        if clear:
-                                            if wp.static(tapers):
-                                                if bent:
-                                                    result.radiance += part * radiance(
-                                                        material, path_of(grooves, hit.piece), here, o, i
-                                                    )
-                                            if not bent:
-                                                lit += part
-                                    if k < EVENTS:
-                                        c = c1
-                            if lit > zero:
-                                result.radiance += lit * radiance(material, path_of(grooves, hit.piece), n, o, i)
-                if j < EVENTS:
-                    b = b1
-        return result
+    line_mean = make_line_mean(Material, radiance, tapers)
 
     @wp.func
     def whole_line(
@@ -273,7 +148,10 @@ def make_footprint_mean(Material: Any, radiance: Any, crossings: bool = True, ta
         one = wp.float64(1.0)
         result = FootprintMean()
         mine = wp.zeros(shape=MOST, dtype=int)
-        parts = 1 + count / PIECES
+        facets = int(0)
+        for a in range(count):
+            facets += piece_at(grooves, ids[a]).count
+        parts = 1 + wp.max(count / PIECES, facets / FACETS)
         part = Footprint()
         part.a1 = step / wp.float64(parts)
         for k in range(parts):

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from ...scratches.grid import StripGrid, box, build, strip_table
 from ..vectors import numbers
-from .section import closed_section, height_at, section_points
+from .section import closed_section, height_at, run_boxes, section_points
 from .solid_device import GrooveSet, Piece, Taper
 from .tapers import Row, joined, simplified, tangents, taper_of, turn_is_straight
 
@@ -139,9 +139,10 @@ class Pattern:
         for groove in self.paths:
             key = groove.section.tobytes()
             if key not in known:
-                known[key] = total
-                vertices.append(groove.section)
-                total += len(groove.section)
+                runs = run_boxes(groove.section)
+                known[key] = total + len(runs)
+                vertices += [runs, groove.section]
+                total += len(runs) + len(groove.section)
             for piece in self._pieces(groove, len(pieces)):
                 low, high = groove.section.min(0), groove.section.max(0)
                 own = {"first": known[key], "count": len(groove.section), "low": low, "high": high, "taper": -1}

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..vectors import numbers
+from .solid_device import GROUP, LONG
 
 
 def section_points(name: str, points: ArrayLike) -> np.ndarray:
@@ -31,6 +32,14 @@ def closed_section(points: np.ndarray) -> np.ndarray:
     whole = np.array(made)
     keep = np.concatenate([[True], np.any(np.diff(whole, axis=0) != 0.0, axis=1)])
     return whole[keep]
+
+
+def run_boxes(section: np.ndarray) -> np.ndarray:
+    """Corners (low, high) of boxes about runs of ``GROUP`` facets of a closed section [2 n, 2]; none of a short one."""
+    if len(section) < int(LONG):
+        return np.zeros((0, 2))
+    runs = [section[k : k + int(GROUP) + 1] for k in range(0, len(section) - 1, int(GROUP))]
+    return np.concatenate([[run.min(0), run.max(0)] for run in runs])
 
 
 def height_at(section: np.ndarray, x: float) -> float:

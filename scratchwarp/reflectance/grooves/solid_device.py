@@ -12,6 +12,10 @@ import warp as wp
 wp.set_module_options({"enable_backward": False})
 
 
+GROUP = wp.constant(8)  # facets in a run of a long profile that has a box of its own
+LONG = wp.constant(12)  # vertices from which on profiles have such boxes
+
+
 @wp.struct
 class Piece:
     """A straight stretch of a groove.
@@ -19,9 +23,10 @@ class Piece:
     A point at ``r`` from ``origin`` has profile x = dot(r, across); it belongs to the stretch where dot(r, end0) <=
     reach0 and dot(r, end1) <= reach1 (unit normals outwards). ``caps``: 1 where a wall may stand at the first end,
     plus 2 where one may at the other; 4 and 8 where facets turn there.
-    ``first``, ``count``: its vertices. ``low``, ``high``: smallest and largest x and z of the profile. ``partner``: the
-    other piece of a mitred end, or -1. ``path``: the groove it belongs to. ``taper``: the ``Taper`` of a stretch whose
-    profile grows or shrinks, or -1; ``low`` and ``high`` then hold all along it.
+    ``first``, ``count``: its vertices, before which lie the boxes (low, high) of runs of them where it is ``grouped``.
+    ``low``, ``high``: smallest and largest x and z of the profile. ``partner``: the other piece of a mitred end, or -1.
+    ``path``: the groove it belongs to. ``taper``: the ``Taper`` of a stretch whose profile grows or shrinks, or -1;
+    ``low`` and ``high`` then hold all along it.
     """
 
     origin: wp.vec2d
@@ -74,6 +79,18 @@ class GrooveSet:
 
 
 @wp.func
+def groups(count: int) -> int:
+    """Runs of a profile of so many vertices."""
+    return (count - 2 + GROUP) / GROUP
+
+
+@wp.func
+def grouped(piece: Piece) -> bool:
+    """Whether runs of a piece's facets have boxes."""
+    return piece.count >= LONG and piece.taper < 0
+
+
+@wp.func
 def piece_at(grooves: GrooveSet, k: int) -> Piece:
     """Piece number ``k``."""
     place = int(k)
@@ -109,17 +126,42 @@ def in_stretch(piece: Piece, r: wp.vec2d, slack: wp.float64) -> bool:
 
 
 @wp.func
+def box_of(vertices: wp.array(dtype=wp.vec2d), piece: Piece, j: int) -> wp.vec4d:
+    """(lowest x, z, highest x, z) of the run of facets of a ``grouped`` piece that begins at vertex ``j``."""
+    at = piece.first - 2 * groups(piece.count) + (j - piece.first) / GROUP * 2
+    low = vertices[at]
+    high = vertices[at + 1]
+    return wp.vec4d(low[0], low[1], high[0], high[1])
+
+
+@wp.func
+def stride_at(vertices: wp.array(dtype=wp.vec2d), piece: Piece, j: int, x: wp.float64) -> int:
+    """How many facets from vertex ``j`` on can be left out because none lies over ``x``; 0 where that is not known."""
+    result = int(0)
+    if grouped(piece) and (j - piece.first) % GROUP == 0:
+        box = box_of(vertices, piece, j)
+        if x < box[0] or x > box[2]:
+            result = GROUP
+    return result
+
+
+@wp.func
 def is_dug(vertices: wp.array(dtype=wp.vec2d), piece: Piece, x: wp.float64, z: wp.float64) -> bool:
     """Whether the profile leaves air at (x, z), z <= 0: an odd number of facets below."""
     zero = wp.float64(0.0)
     below = int(0)
     if piece.taper >= 0 or (x >= piece.low[0] and x <= piece.high[0] and z > piece.low[1]):
-        for j in range(piece.first, piece.first + piece.count - 1):
-            a = vertices[j]
-            b = vertices[j + 1]
-            if a[1] <= zero and b[1] <= zero and (a[0] <= x) != (b[0] <= x):
-                if a[1] + (b[1] - a[1]) * (x - a[0]) / (b[0] - a[0]) < z:
-                    below = 1 - below
+        j = int(piece.first)
+        while j < piece.first + piece.count - 1:
+            on = stride_at(vertices, piece, j, x)
+            if on == 0:
+                on = 1
+                a = vertices[j]
+                b = vertices[j + 1]
+                if a[1] <= zero and b[1] <= zero and (a[0] <= x) != (b[0] <= x):
+                    if a[1] + (b[1] - a[1]) * (x - a[0]) / (b[0] - a[0]) < z:
+                        below = 1 - below
+            j += on
     return below == 1
 
 
@@ -129,12 +171,17 @@ def is_piled(vertices: wp.array(dtype=wp.vec2d), piece: Piece, x: wp.float64, z:
     zero = wp.float64(0.0)
     above = int(0)
     if piece.taper >= 0 or (x >= piece.low[0] and x <= piece.high[0] and z < piece.high[1]):
-        for j in range(piece.first, piece.first + piece.count - 1):
-            a = vertices[j]
-            b = vertices[j + 1]
-            if a[1] >= zero and b[1] >= zero and (a[0] <= x) != (b[0] <= x):
-                if a[1] + (b[1] - a[1]) * (x - a[0]) / (b[0] - a[0]) > z:
-                    above = 1 - above
+        j = int(piece.first)
+        while j < piece.first + piece.count - 1:
+            on = stride_at(vertices, piece, j, x)
+            if on == 0:
+                on = 1
+                a = vertices[j]
+                b = vertices[j + 1]
+                if a[1] >= zero and b[1] >= zero and (a[0] <= x) != (b[0] <= x):
+                    if a[1] + (b[1] - a[1]) * (x - a[0]) / (b[0] - a[0]) > z:
+                        above = 1 - above
+            j += on
     return above == 1
 
 

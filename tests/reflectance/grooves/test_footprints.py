@@ -17,6 +17,9 @@ X90 = [[[-FAR, 0], [FAR, 0]], [[0, -FAR], [0, FAR]]]
 X60 = [X90[0], [-SIXTY, SIXTY]]
 END = [[[-FAR, 0], [0, 0]]]
 CORNER = [[[-FAR, 0], [0, 0], SIXTY]]
+FLAT = [[-0.5, 0.0], [-0.3, -0.4], [0.3, -0.4], [0.5, 0.0]]
+ARC = np.linspace(-0.5, 0.5, 33)
+ROUND = np.stack([ARC, -np.sqrt(np.maximum(0.25 - ARC**2, 0.0))], 1)  # 32 facets, which lie in boxes
 STAR = [*X60, [[-SIXTY[0], SIXTY[1]], [SIXTY[0], -SIXTY[1]]]]
 GEOMETRIES = {
     "parallel": (X90[:1], V, "cap"),
@@ -28,6 +31,9 @@ GEOMETRIES = {
     "mitred end": (END, V, "mitre"),
     "corner": (CORNER, V, "cap"),
     "three": (STAR, V, "cap"),
+    "three rims": (STAR, RIM, "cap"),
+    "flat end": (END, FLAT, "cap"),
+    "round": (X60, ROUND, "cap"),
 }
 
 
