@@ -1,6 +1,6 @@
 """Scene + EffectPlan + simulated tables -> the kernel's key and arguments."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -152,11 +152,17 @@ def camera_data(scene: Scene, plan: EffectPlan) -> CameraData:
 
 
 def assemble(
-    scene: Scene, plan: EffectPlan, tables: Sequence[Any], device: str = "cpu", parts: Parts | None = None
+    scene: Scene,
+    plan: EffectPlan,
+    tables: Sequence[Any],
+    device: str = "cpu",
+    parts: Parts | None = None,
+    progress: Callable[[int, int, str], None] | None = None,
 ) -> Assembled:
     """Build the device data that the plan's effects need, and nothing else.
 
     ``parts``: what was built for an earlier scene or plan on this device; what is the same is taken from there.
+    ``progress``: called with (done, total, what) by what takes long.
     """
     parts = parts or Parts()
     key = kernel_key(scene, plan)
@@ -253,7 +259,7 @@ def assemble(
         (digest(scene.materials, key, waved, sliced), scene.curves, scene.meshes, scene.textures, placed)
         if key.glints
         else (),
-        lambda: glints.pack(scene, plan, key, shape, device),
+        lambda: glints.pack(scene, plan, key, shape, device, progress),
     )
     scratch_set.glints = sparkle.arrays
     laid = tuple(tuple(x.layer.label for x in w.layers) if w is not None else () for w in plan.grooves)

@@ -1,6 +1,7 @@
 """Layers that diffract -> device arrays: scratches cut to the triangles, wavelengths, reflectances."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -26,6 +27,7 @@ from .glint_tables import SHARES, bin_width, depth_shares, wavelengths_of, wide_
 from .key import KernelKey
 
 COSINES = 33
+SHOWN = 100_000
 _SIZES = ("depth", "width")
 
 
@@ -153,8 +155,18 @@ def _shallowest(plan: WaveLayerPlan, segments: SegmentSet | None, number: int) -
     return float(own.min()) if len(own) else 0.0
 
 
-def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, device: str = "cpu") -> PackedGlints:
-    """What the plan's diffracting layers need; empty arrays where nothing diffracts."""
+def pack(
+    scene: Scene,
+    plan: EffectPlan,
+    key: KernelKey,
+    shape: PackedGeometry,
+    device: str = "cpu",
+    progress: Callable[[int, int, str], None] | None = None,
+) -> PackedGlints:
+    """What the plan's diffracting layers need; empty arrays where nothing diffracts.
+
+    ``progress``: called with (done, total, "scratches") while more than ``SHOWN`` of them are laid on the surface.
+    """
     arrays: Any = GlintArrays()
     if not key.glints or shape.mesh is None:
         return PackedGlints(arrays, None)
@@ -174,7 +186,9 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
         arrays.fringes = wp.array(fringes(), dtype=wp.vec3, device=device)
     if strokes:
         g = shape.arrays
-        segments = build(strokes, g.points, g.uvs, g.dpdu, g.dpdv, shape.mesh, key.glint_hierarchy, device)
+        shown = progress if sum(len(s.curves.counts) for s in strokes) > SHOWN else None
+        steps = (lambda done, total: shown(done, total, "scratches")) if shown else None
+        segments = build(strokes, g.points, g.uvs, g.dpdu, g.dpdv, shape.mesh, key.glint_hierarchy, device, steps)
         if key.glint_lists:
             starts, around, reach = surroundings(g.points.numpy().reshape(-1, 3, 3))
             arrays.around_starts = wp.array(starts, dtype=int, device=device)

@@ -74,7 +74,7 @@ def render(
     key = kernel_key(scene, plan)
     about = described(scene, plan, key)
     if farm is None:
-        built = assemble(scene, plan, tables, device)
+        built = assemble(scene, plan, tables, device, progress=progress)
         kernel, fresh = loaded(key, device, progress)
         trace: Tracer = Threads(kernel, built, plan, device, control)
     else:

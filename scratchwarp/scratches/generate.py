@@ -6,12 +6,14 @@ from typing import Any
 import numpy as np
 
 from ..scene import Curves, Layer
-from .along import Field, followed, varied
+from .along import STEPS, Field, followed, varied
 
 # More than this many would not fit into memory together with their pieces.
 MOST = 5_000_000
 MOST_CORNERS = 40_000_000
 _POINTS_A_RADIAN = 8.0
+# Scratches that are laid at once.
+PORTION = 1 << 13
 
 
 def random_scratches(
@@ -47,9 +49,10 @@ def random_scratches(
             f"{layer.label}: its coverage or density calls for {number:.3g} scratches, more than {MOST}; make them "
             "longer or wider, or use a regular distribution"
         )
-    if number * points > MOST_CORNERS:
+    corners = STEPS + 1 if field is not None else points
+    if number * corners > MOST_CORNERS:
         raise ValueError(
-            f"{layer.label}: {number:.3g} scratches of {points} corners each are more than {MOST_CORNERS}; make them "
+            f"{layer.label}: {number:.3g} scratches of {corners} corners each are more than {MOST_CORNERS}; make them "
             "straighter or fewer"
         )
     rng = np.random.default_rng([layer.seed & 0xFFFFFFFF, *layer.name.encode()])
@@ -65,13 +68,18 @@ def random_scratches(
         along, across = length * at, np.zeros(points)
     else:
         along, across = length / turn * np.sin(turn * at), length / turn * (1.0 - np.cos(turn * at))
-    cosine, sine = np.cos(angle)[:, None], np.sin(angle)[:, None]
-    x = middle[:, :1] + cosine * along - sine * across
-    y = middle[:, 1:] + sine * along + cosine * across
-    if field is not None:
-        traced = followed(middle, angle, angle, length, np.array(low), np.array(scale), field)
-        x, y, points = traced[..., 0], traced[..., 1], traced.shape[1]
-    uv = np.stack([low[0] + x / scale[0], low[1] + y / scale[1], np.zeros_like(x)], -1).reshape(-1, 3)
+    points = corners
+    uv = np.zeros((n, points, 3))
+    for first in range(0, n, PORTION):  # what is in between stays in the processor's cache
+        some = slice(first, first + PORTION)
+        if field is not None:
+            own = angle[some]
+            x, y = np.moveaxis(followed(middle[some], own, own, length, np.array(low), np.array(scale), field), -1, 0)
+        else:
+            cosine, sine = np.cos(angle[some])[:, None], np.sin(angle[some])[:, None]
+            x = middle[some, :1] + cosine * along - sine * across
+            y = middle[some, 1:] + sine * along + cosine * across
+        uv[some, :, 0], uv[some, :, 1] = low[0] + x / scale[0], low[1] + y / scale[1]
 
     varying = varying and layer.variation_length > 0.0
 
@@ -83,7 +91,7 @@ def random_scratches(
     unit = "uv" if layer.space == "uv" else "um"
     made = Curves(
         path=layer.label,
-        points=uv,
+        points=uv.reshape(-1, 3),
         counts=np.full(n, points, np.int32),
         widths=sizes(layer.width, layer.width_variation),
         depths=sizes(layer.depth, layer.depth_variation),

@@ -1,6 +1,6 @@
 """Explicit scratches on a mesh: polylines -> pieces, each in the plane of one triangle, in the order of triangles."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,6 +15,12 @@ Array = np.ndarray[Any, Any]
 
 # Sharper bends than this [rad] are corners of the scratch; gentler ones are a smooth scratch drawn by a polyline.
 CORNER = 0.6
+# Points of polylines that are looked at at once.
+PORTION = 1 << 15
+# Straight parts of polylines that are cut at once.
+STRETCHES = 1 << 18
+# More pieces than this would take more than about 5 GB while they are made.
+MOST_PIECES = 24_000_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,9 +116,53 @@ def edge_normals(points: Array) -> Array:
     return np.divide(inward, size, out=np.zeros_like(inward), where=size > 0).astype(np.float32)
 
 
-def stretches(curves: Curves, layer: int, device: str = "cpu") -> tuple[Stretches, int]:
-    """The straight parts of polylines with the directions that a smooth scratch has at their ends, and how many."""
-    points, counts = np.asarray(curves.points, np.float64), np.asarray(curves.counts, np.int64)
+def stretches(
+    curves: Curves, layer: int, device: str = "cpu", progress: Callable[[int], None] | None = None
+) -> tuple[Stretches, int]:
+    """The straight parts of polylines with the directions that a smooth scratch has at their ends, and how many.
+
+    ``progress``: called with the number of polylines that were just looked at.
+    """
+    counts = np.asarray(curves.counts, np.int64)
+    most = int(np.maximum(counts - 1, 0).sum())
+    ends = np.empty((2, most, 3))
+    along = np.empty((2, most, 3), np.float32)
+    sizes = np.empty((2, most), np.float32)
+    n = 0
+    # a few at a time: what is in between stays in the processor's cache
+    for first, last, point in _portions(counts):
+        own = slice(point, point + int(counts[first:last].sum()))
+        part = _straight(curves.points[own], counts[first:last], curves.widths[own], curves.depths[own])
+        k = len(part[0])
+        for into, values in zip((*ends, *along, *sizes), part, strict=True):
+            into[n : n + k] = values
+        n += k
+        if progress is not None:
+            progress(last - first)
+    sizes[0] *= -1.0 if curves.width_unit == "uv" else 1.0
+    sizes[1] *= -1.0 if curves.depth_unit == "uv" else 1.0
+    s: Any = Stretches()
+    s.a, s.b = (wp.array(x[:n], dtype=wp.vec3d, device=device, copy=False) for x in ends)
+    s.along_a, s.along_b = (wp.array(x[:n], dtype=wp.vec3, device=device, copy=False) for x in along)
+    s.width, s.depth = (wp.array(x[:n], dtype=float, device=device, copy=False) for x in sizes)
+    s.layer = layer
+    return s, n
+
+
+def _portions(counts: Array) -> Iterator[tuple[int, int, int]]:
+    """(first, last + 1, first point) of polylines ``PORTION`` points at a time, or one at a time where it has more."""
+    after = np.cumsum(counts)
+    first = 0
+    while first < len(counts):
+        point = int(after[first] - counts[first])
+        last = max(int(np.searchsorted(after, point + PORTION, side="right")), first + 1)
+        yield first, last, point
+        first = last
+
+
+def _straight(points: Array, counts: Array, widths: Array, depths: Array) -> tuple[Array, ...]:
+    """Ends, directions there, width and depth of the straight parts of some polylines."""
+    points = np.asarray(points, np.float64)
     last = np.zeros(len(points), bool)
     last[np.cumsum(counts) - 1] = True
     start = np.flatnonzero(~last)
@@ -140,20 +190,11 @@ def stretches(curves: Curves, layer: int, device: str = "cpu") -> tuple[Stretche
     reflect = 2.0 * (at_start * unit[start]).sum(1, keepdims=True) * unit[start] - at_start
     at_end[closing] = reflect[closing]
 
-    width = 0.5 * (curves.widths[start] + curves.widths[start + 1])
-    depth = 0.5 * (curves.depths[start] + curves.depths[start + 1])
-    width = -width if curves.width_unit == "uv" else width
-    depth = -depth if curves.depth_unit == "uv" else depth
+    width = 0.5 * (widths[start] + widths[start + 1])
+    depth = 0.5 * (depths[start] + depths[start + 1])
     keep = (size[start, 0] > 0) & (width != 0)
-    s: Any = Stretches()
-    s.a = wp.array(points[start][keep], dtype=wp.vec3d, device=device)
-    s.b = wp.array(points[start + 1][keep], dtype=wp.vec3d, device=device)
-    s.along_a = wp.array(at_start[keep].astype(np.float32), dtype=wp.vec3, device=device)
-    s.along_b = wp.array(at_end[keep].astype(np.float32), dtype=wp.vec3, device=device)
-    s.width = wp.array(width[keep].astype(np.float32), dtype=float, device=device)
-    s.depth = wp.array(depth[keep].astype(np.float32), dtype=float, device=device)
-    s.layer = layer
-    return s, int(keep.sum())
+    made = (points[start], points[start + 1], at_start, at_end, width, depth)
+    return tuple(values[keep] for values in made)
 
 
 def build(
@@ -165,6 +206,7 @@ def build(
     mesh: wp.Mesh,
     with_bvh: bool = True,
     device: str = "cpu",
+    progress: Callable[[int, int], None] | None = None,
 ) -> SegmentSet:
     """Lay scratches on triangles and cut them there.
 
@@ -174,6 +216,9 @@ def build(
     Args:
         points, uvs: corners of all triangles, dpdu, dpdv: of each triangle (arrays of ``kernels.geometry``).
         mesh: over the same triangles. with_bvh: whether to build a hierarchy over the pieces.
+        progress: called with (done, total) as work proceeds.
+
+    Raises ValueError where that would be more than ``MOST_PIECES`` pieces.
     """
     corners = points.numpy().reshape(-1, 3, 3)
     f: Any = Facets()
@@ -183,32 +228,45 @@ def build(
     f.edges = wp.array(inward.reshape(-1, 3), dtype=wp.vec3, device=device)
     # what rounding moves a point on the surface
     slack = 4e-6 * float(np.abs(corners).max(initial=0.0)) + 1e-9
-    parts = [_cut(s, f, mesh, slack, device) for s in strokes]
-    parts = [p for p in parts if len(p)]
+    # each scratch is made straight, cut twice (to count and to keep), and placed in the hierarchy
+    left, total = [0], 4 * sum(len(s.curves.counts) for s in strokes)
+
+    def done(number: int) -> None:
+        left[0] += number
+        if progress is not None:
+            progress(left[0], total)
+
+    parts: list[Array] = []
+    for s in strokes:
+        parts.append(_cut(s, f, mesh, slack, device, sum(map(len, parts)), done))
     row_type: Any = Segment
-    rows = np.concatenate(parts) if parts else np.zeros(0, row_type.numpy_dtype())
+    parts = parts or [np.zeros(0, row_type.numpy_dtype())]
+    rows = np.concatenate(parts) if len(parts) > 1 else parts[0]
     rows = rows[np.argsort(rows["triangle"], kind="stable")]
     starts = np.searchsorted(rows["triangle"], np.arange(len(corners) + 1)).astype(np.int32)
     count = len(rows)
-    segments: Any = wp.array(rows if count else np.zeros(1, row_type.numpy_dtype()), dtype=Segment, device=device)
+    held = rows if count else np.zeros(1, row_type.numpy_dtype())
+    segments: Any = wp.array(held, dtype=Segment, device=device, copy=False)
+    del parts
     hierarchy = None
     if with_bvh and count:
         lower: Any = wp.empty(count, dtype=wp.vec3, device=device)
         upper: Any = wp.empty(count, dtype=wp.vec3, device=device)
         wp.launch(bounds, count, inputs=[segments, points], outputs=[lower, upper], device=device)
         hierarchy = wp.Bvh(lower, upper)
+    done(total - left[0])
     return SegmentSet(segments, wp.array(starts, dtype=int, device=device), count, hierarchy)
 
 
-def _cut(stroke: Stroke, f: Any, mesh: wp.Mesh, slack: float, device: str) -> Array:
-    s, n = stretches(stroke.curves, stroke.layer, device)
+def _cut(
+    stroke: Stroke, f: Any, mesh: wp.Mesh, slack: float, device: str, before: int, done: Callable[[int], None]
+) -> Array:
+    s, n = stretches(stroke.curves, stroke.layer, device, done)
     row_type: Any = Segment
     if n == 0 or not stroke.taken.any():
         return np.zeros(0, row_type.numpy_dtype())
     f.taken = wp.array(stroke.taken.astype(np.uint8), dtype=wp.uint8, device=device)
-    none: Any = wp.empty(0, dtype=int, device=device)
     counts: Any = wp.zeros(n, dtype=int, device=device)
-    nothing: Any = wp.empty(0, dtype=Segment, device=device)
     kernel: Any
     if stroke.curves.space == "uv":
         faces = np.flatnonzero(stroke.taken).astype(np.int32)
@@ -216,17 +274,46 @@ def _cut(stroke: Stroke, f: Any, mesh: wp.Mesh, slack: float, device: str) -> Ar
         over = wp.Bvh(
             wp.array(flat.min(1), dtype=wp.vec3, device=device), wp.array(flat.max(1), dtype=wp.vec3, device=device)
         )
-        given = [s, f, over.id, wp.array(faces, dtype=int, device=device)]
+        given = [f, over.id, wp.array(faces, dtype=int, device=device)]
         kernel = cut_in_uv
     else:
-        given = [s, f, mesh.id, slack]
+        given = [f, mesh.id, slack]
         kernel = cut_on_surface
-    wp.launch(kernel, n, inputs=[*given, none, counts, nothing], device=device)
-    found = counts.numpy()
-    starts = np.concatenate([[0], np.cumsum(found)]).astype(np.int64)
-    if starts[-1] == 0:
+
+    def pass_over(starts: Any, out: Any, found: Callable[[int], None]) -> None:
+        for first in range(0, n, STRETCHES):
+            last = min(first + STRETCHES, n)
+            some: Any = _some(s, first, last)
+            begin = starts[first:last] if starts.shape[0] else starts
+            wp.launch(kernel, last - first, inputs=[some, *given, begin, counts[first:last], out], device=device)
+            found(last)
+            done(len(stroke.curves.counts) * last // n - len(stroke.curves.counts) * first // n)
+
+    def few_enough(last: int) -> None:
+        pieces = before + int(counts[:last].numpy().sum(dtype=np.int64))
+        if pieces > MOST_PIECES:
+            raise ValueError(
+                f"{stroke.curves.path}: the first {last} of {n} straight parts of its scratches are cut into {pieces} "
+                f"pieces by the triangles that they cross, more than {MOST_PIECES}; make the scratches fewer or "
+                "shorter, or set the layer's model to table"
+            )
+
+    none: Any = wp.empty(0, dtype=int, device=device)
+    nothing: Any = wp.empty(0, dtype=Segment, device=device)
+    pass_over(none, nothing, few_enough)
+    after = np.cumsum(counts.numpy(), dtype=np.int64)
+    if after[-1] == 0:
         return np.zeros(0, row_type.numpy_dtype())
-    out: Any = wp.empty(int(starts[-1]), dtype=Segment, device=device)
-    begin: Any = wp.array(starts[:-1].astype(np.int32), dtype=int, device=device)
-    wp.launch(kernel, n, inputs=[*given, begin, counts, out], device=device)
+    out: Any = wp.empty(int(after[-1]), dtype=Segment, device=device)
+    starts: Any = wp.array((after - counts.numpy()).astype(np.int32), dtype=int, device=device)
+    pass_over(starts, out, lambda last: None)
     return out.numpy()
+
+
+def _some(s: Any, first: int, last: int) -> Stretches:
+    """Stretches ``first`` to ``last - 1``."""
+    r: Any = Stretches()
+    for name in ("a", "b", "along_a", "along_b", "width", "depth"):
+        setattr(r, name, getattr(s, name)[first:last])
+    r.layer = s.layer
+    return r

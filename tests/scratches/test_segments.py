@@ -5,6 +5,7 @@ import pytest
 import warp as wp
 
 from scratchwarp.scene import Curves, Layer, Profile
+from scratchwarp.scratches import segments
 from scratchwarp.scratches.generate import random_scratches
 from scratchwarp.scratches.segments import Stroke, build, stretches, surroundings
 
@@ -22,7 +23,7 @@ def ball(rings=40, sides=80):
     return made[area > 1e-12].astype(np.float32)
 
 
-def laid(corners, curves, uvs=None):
+def laid(corners, curves, uvs=None, **options):
     """The pieces of one set on a mesh."""
     m = len(corners)
     points = wp.array(corners.reshape(-1, 3), dtype=wp.vec3, device="cpu")
@@ -32,7 +33,7 @@ def laid(corners, curves, uvs=None):
         wp.array(np.tile(axis, (m, 1)).astype(np.float32), dtype=wp.vec3, device="cpu") for axis in np.eye(3)[:2]
     ]
     flat = wp.array(uv, dtype=wp.vec2, device="cpu")
-    made = build([Stroke(curves, 3, np.ones(m, bool))], points, flat, *gradients, mesh)
+    made = build([Stroke(curves, 3, np.ones(m, bool))], points, flat, *gradients, mesh, **options)
     return made, made.segments.numpy()[: made.count]
 
 
@@ -108,3 +109,35 @@ def test_random_scratches_cover_what_was_asked_for():
     np.testing.assert_allclose(np.linalg.norm(run, axis=1), 400.0, rtol=1e-9)
     with pytest.raises(ValueError, match="more than"):
         random_scratches(layer, (0.0, 0.0), (1.0, 1.0), (2e7, 2e7))
+    with pytest.raises(ValueError, match="9 corners each are more than"):  # where they follow a field
+        random_scratches(layer, (0.0, 0.0), (1.0, 1.0), (1.45e5, 1.45e5), lambda uv: np.ones_like(uv))
+
+
+MANY = Curves(
+    path="/m",
+    points=np.random.default_rng(5).random((200, 3)) * [1.0, 1.0, 0.0],
+    counts=[2, 3, 7, 8] * 10,
+    widths=np.linspace(1.0, 3.0, 200),
+    depths=np.linspace(2.0, 1.0, 200),
+    space="uv",
+)
+
+
+def test_portions_change_nothing(monkeypatch):
+    corners = ball(8, 12)
+    uvs = np.random.default_rng(6).random((len(corners), 3, 2))
+    steps = []
+    made, rows = laid(corners, MANY, uvs, progress=lambda *x: steps.append(x))
+    assert {total for _, total in steps} == {160} and steps[-1] == (160, 160) and steps == sorted(steps)
+    monkeypatch.setattr(segments, "PORTION", 9)
+    monkeypatch.setattr(segments, "STRETCHES", 13)
+    again, cut = laid(corners, MANY, uvs)
+    np.testing.assert_array_equal(rows, cut)
+    np.testing.assert_array_equal(made.starts.numpy(), again.starts.numpy())
+
+
+def test_too_many_pieces_are_said(monkeypatch):
+    """Before they are made."""
+    monkeypatch.setattr(segments, "MOST_PIECES", 30)
+    with pytest.raises(ValueError, match="/m: .* cut into .* pieces .* more than 30; make the scratches fewer"):
+        laid(ball(8, 12), MANY, np.random.default_rng(6).random((len(ball(8, 12)), 3, 2)))
