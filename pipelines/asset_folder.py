@@ -1,10 +1,10 @@
 """The folder of a published asset, as the USD working group lays it out.
 
-    <name>.usda          entry: default prim with kind, assetInfo, extents hint, and a payload
-    contents/            the stage and every file it needs, by relative paths; baked surfaces over it
-    thumbnails/<name>.*  picture of the asset
-    <name>.usdz          all of it in one file
-    manifest.json        path, size and SHA-256 of every other file
+<name>.usda          entry: default prim with kind, assetInfo, extents hint, and a payload
+contents/            the stage and every file it needs, by relative paths; baked surfaces over it
+thumbnails/<name>.*  picture of the asset
+<name>.usdz          all of it in one file
+manifest.json        path, size and SHA-256 of every other file
 """
 
 import hashlib
@@ -78,14 +78,20 @@ def thumbnail_file(path: str | Path) -> Draw:
 
 
 def build(
-    source: str | Path, folder: Path, name: str, version: str, draw: Draw | None, usdz: bool = True,
+    source: str | Path,
+    folder: Path,
+    name: str,
+    version: str,
+    draw: Draw | None,
+    usdz: bool = True,
     bake: Bake | None = None,
+    kind: str = "component",
 ) -> dict[str, Any]:
     """Fill ``folder`` with the asset ``name`` made of the stage ``source`` and return its manifest.
 
     ``draw(entry, target)`` writes the thumbnail ``target``, a PNG, or a file of its name with another suffix.
     ``bake(payload)`` lays baked surfaces over the copy of the stage and returns the layer to take in its place, and
-    the materials that have some.
+    the materials that have some. Of the ``kind`` component, models below the default prim become subcomponents.
 
     Raises:
         ValueError: a name that is none, no default prim, something that the default prim needs
@@ -104,7 +110,7 @@ def build(
     if bake:
         payload, baked = bake(payload)
     entry = folder / f"{name}.usda"
-    _write_entry(stage, payload, entry, name, version)
+    _write_entry(stage, payload, entry, name, version, kind)
     known = {_nameless(finding) for finding in validate_stage(stage)}
     for finding in validate_stage(Usd.Stage.Open(str(entry))):
         if finding.severity == "error" and _nameless(finding) not in known:
@@ -121,7 +127,7 @@ def build(
     return _write_manifest(folder, name, version, missing, baked)
 
 
-def _write_entry(stage: Usd.Stage, payload: Path, entry: Path, name: str, version: str) -> None:
+def _write_entry(stage: Usd.Stage, payload: Path, entry: Path, name: str, version: str, kind: str) -> None:
     """The entry file: what can be known of the asset before its payload is loaded."""
     root = stage.GetDefaultPrim()
     layer = Sdf.Layer.CreateNew(str(entry))
@@ -132,8 +138,10 @@ def _write_entry(stage: Usd.Stage, payload: Path, entry: Path, name: str, versio
     made.SetDefaultPrim(prim)
     prim.GetPayloads().AddPayload(f"./contents/{payload.name}", root.GetPath())
     model = Usd.ModelAPI(prim)
-    nested = any(Usd.ModelAPI(p).GetKind() in ("component", "group", "assembly") for p in _below(root))
-    model.SetKind(Kind.Tokens.assembly if nested else Kind.Tokens.component)
+    model.SetKind(kind)
+    if kind == Kind.Tokens.component:  # nothing below a component is a model
+        for path in _models(stage, root):
+            Usd.ModelAPI(made.OverridePrim(path)).SetKind(Kind.Tokens.subcomponent)
     model.SetAssetName(name)
     model.SetAssetVersion(version)
     model.SetAssetIdentifier(Sdf.AssetPath(f"./{entry.name}"))
@@ -149,8 +157,22 @@ def _write_entry(stage: Usd.Stage, payload: Path, entry: Path, name: str, versio
     layer.Save()
 
 
-def _below(root: Usd.Prim) -> Iterator[Usd.Prim]:
-    return (prim for prim in Usd.PrimRange(root) if prim != root)
+def _models(stage: Usd.Stage, root: Usd.Prim) -> list[Sdf.Path]:
+    """Paths below ``root`` of components, groups and assemblies, whichever of its variants is chosen."""
+    session = Sdf.Layer.CreateAnonymous()
+    seen = Usd.Stage.Open(stage.GetRootLayer(), session)
+    chosen = Sdf.CreatePrimInLayer(session, root.GetPath()).variantSelections
+    found: dict[Sdf.Path, None] = {}
+    for name in (None, *root.GetVariantSets().GetNames()):
+        for choice in root.GetVariantSets().GetVariantSet(name).GetVariantNames() if name else (None,):
+            if name:
+                chosen[name] = choice
+            for prim in Usd.PrimRange(seen.GetPrimAtPath(root.GetPath())):
+                if prim.GetPath() != root.GetPath() and Kind.Registry.IsA(Usd.ModelAPI(prim).GetKind(), "model"):
+                    found[prim.GetPath()] = None
+        if name:
+            del chosen[name]
+    return list(found)
 
 
 def _add_thumbnail(entry: Path, target: Path, draw: Draw) -> None:

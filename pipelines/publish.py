@@ -4,6 +4,7 @@ import argparse
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from .command import Command, Report, WrongUsage
 
@@ -14,6 +15,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("out", metavar="OUT_DIR", help="folder of the asset; one that was published before is replaced")
     parser.add_argument("--name", help="of the asset: letters, digits and _ [that of STAGE]")
     parser.add_argument("--assetVersion", default="1", metavar="TEXT", help="of the asset [1]")
+    parser.add_argument(
+        "--kind", choices=("component", "assembly"), default="component",
+        help="of the asset; models in a component become subcomponents [component]",
+    )  # fmt: skip
     parser.add_argument("--thumbnail", metavar="FILE", help="PNG or JPEG [rendered]")
     parser.add_argument("--no-thumbnail", action="store_true", help="none")
     parser.add_argument("--no-usdz", action="store_true", help="no package")
@@ -65,7 +70,8 @@ def run(options: argparse.Namespace) -> Report:
     heard = Warnings()  # missing files are in the manifest, once
     with gathered_diagnostics(options.stage, heard), replaced(Path(options.out), options.stage) as folder:
         look = None if options.no_preview else bake
-        manifest = build(options.stage, folder, name, options.assetVersion, drawn, not options.no_usdz, look)
+        how: dict[str, Any] = {"usdz": not options.no_usdz, "bake": look, "kind": options.kind}
+        manifest = build(options.stage, folder, name, options.assetVersion, drawn, **how)
     lines = [f"{options.out}/{row['path']}  {row['bytes']} bytes" for row in manifest["files"]]
     lines += [f"warning: {path} cannot be found and is left out" for path in manifest["missing"]]
     lines += [f"warning: {note}" for note in notes]

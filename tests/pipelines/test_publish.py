@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import os
 import subprocess
 import sys
 
@@ -70,14 +71,62 @@ def test_published(worn, tmp_path_factory):
 def test_the_package_opens_without_our_schemas(worn, tmp_path):
     out = tmp_path / "elsewhere"
     assert publish(worn, out, "--no-thumbnail") == 0
-    code = (
-        "import sys; from pxr import Usd, UsdShade; s = Usd.Stage.Open(sys.argv[1]);"
-        "m = UsdShade.MaterialBindingAPI(s.GetPrimAtPath('/World/geo/left')).ComputeBoundMaterial()[0];"
-        "print(m.GetPath(), m.ComputeSurfaceSource()[0].GetShaderId())"
+    plain = {name: value for name, value in os.environ.items() if name != "PXR_PLUGINPATH_NAME"}
+    argv = [sys.executable, "-c", BARE, str(out / "cup.usdz")]
+    done = subprocess.run(argv, env=plain, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    assert found["surfaces"]["/World/geo/left"] == ["/World/mtl/steel", "UsdPreviewSurface"]
+    assert found["textures"] and all(size > 0 for size in found["textures"].values())
+    assert found["errors"] == [] and min(found["size"]) > 0.0
+
+
+BARE = """
+import json, sys
+from pxr import Ar, Usd, UsdGeom, UsdShade
+stage = Usd.Stage.Open(sys.argv[1])
+assert not Usd.SchemaRegistry().FindAppliedAPIPrimDefinition("ScratchLayerAPI") and "scratchwarp" not in sys.modules
+surfaces, textures = {}, {}
+for prim in stage.Traverse():
+    if prim.IsA(UsdGeom.Gprim):
+        material = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial()[0]
+        if material:
+            shader = material.ComputeSurfaceSource()[0]
+            surfaces[str(prim.GetPath())] = [str(material.GetPath()), shader.GetShaderId()]
+            for node in Usd.PrimRange(material.GetPrim()):
+                file = UsdShade.Shader(node).GetInput("file") if node.IsA(UsdShade.Shader) else None
+                if file:
+                    path = Ar.ResolvedPath(file.Get().resolvedPath)
+                    textures[str(path)] = Ar.GetResolver().OpenAsset(path).GetSize()
+box = UsdGeom.BBoxCache(0.0, ["default", "render"]).ComputeWorldBound(stage.GetDefaultPrim()).ComputeAlignedRange()
+errors = [str(e) for e in stage.GetCompositionErrors()]
+print(json.dumps({"surfaces": surfaces, "textures": textures, "errors": errors, "size": list(box.GetSize())}))
+"""
+
+
+def test_models_in_a_component_become_subcomponents(tmp_path):
+    (tmp_path / "set.usda").write_text(
+        '#usda 1.0\n(\n defaultPrim = "Set"\n metersPerUnit = 1\n upAxis = "Y"\n)\n'
+        'def Xform "Set" (\n kind = "group"\n variants = {\n  string shape = "one"\n }\n'
+        ' prepend variantSets = "shape"\n)\n{\n def Xform "Box" (\n  kind = "component"\n )\n {\n }\n'
+        ' variantSet "shape" = {\n  "one" {\n  }\n  "two" {\n   def Xform "Other" (\n    kind = "assembly"\n   )\n'
+        "   {\n   }\n  }\n }\n}\n"
     )
-    argv = [sys.executable, "-c", code, str(out / "cup.usdz")]
-    done = subprocess.run(argv, capture_output=True, text=True, check=True)
-    assert done.stdout.split() == ["/World/mtl/steel", "UsdPreviewSurface"]
+    out = tmp_path / "out"
+    plain = ("--no-thumbnail", "--no-usdz", "--no-preview")
+    assert publish(tmp_path / "set.usda", out, *plain) == 0
+    stage = Usd.Stage.Open(str(out / "cup.usda"))
+
+    def kinds():
+        return {str(p.GetPath()): Usd.ModelAPI(p).GetKind() for p in stage.Traverse()}
+
+    assert kinds() == {"/Set": "component", "/Set/Box": "subcomponent"}
+    stage.GetDefaultPrim().GetVariantSet("shape").SetVariantSelection("two")
+    assert kinds() == {"/Set": "component", "/Set/Box": "subcomponent", "/Set/Other": "subcomponent"}
+    assert publish(tmp_path / "set.usda", out, *plain, "--kind=assembly") == 0
+    stage = Usd.Stage.Open(str(out / "cup.usda"))
+    stage.Reload()
+    assert kinds() == {"/Set": "assembly", "/Set/Box": "component"}
 
 
 def test_what_is_there_is_not_replaced(worn, tmp_path, capsys):
