@@ -7,12 +7,15 @@ the texels resolve of the scratches' heights becomes the normal map, what they d
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from scratchwarp.scene import PreviewSurface, Scene, TextureInput
+
+from .drawn_curves import drawn
+from .fates import LEFT_OUT, Fate, shown
 
 Array = np.ndarray
 
@@ -25,11 +28,18 @@ _MOST_TEXELS = 1 << 24
 @dataclass(frozen=True, eq=False)
 class Laid:
     """A sublayer on the texels: its ``plan``, the ``share`` of each texel [h, w], direction as (cos, sin) of twice the
-    angle from dP/du [h, w, 2]."""
+    angle from dP/du [h, w, 2], mean ``width`` [um], how our own pictures show it (``fate``: see ``fates.Fate``)."""
 
     plan: Any
     share: Array
     two: Array
+    width: float
+    fate: str
+
+
+DIFFRACTED = 0.34 * 0.55
+"""Width of a groove [um] times the roughness that spreads light as its diffraction does: lobes whose peaks are half as
+high at the same angle, at 550 nm."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +53,7 @@ class Look:
         layers: its sublayers. base: UsdPreviewSurface inputs, constants or maps: color, metallic, alpha, anisotropy,
             rotation, ior, specular_color (of a specular workflow, else None), clearcoat, clearcoat_alpha, opacity,
             emissive, normal (slopes), and of a ScratchSurface specular, fresnel (of ``BaseSurface``), eta, k.
-        notes: what is not in it.
+        notes: what is not in it. fates: of its layers.
     """
 
     material: int
@@ -57,6 +67,7 @@ class Look:
     layers: tuple[Laid, ...]
     base: Mapping[str, Any]
     notes: tuple[str, ...] = ()
+    fates: tuple[Fate, ...] = ()
 
     @property
     def size(self) -> tuple[int, int]:
@@ -82,8 +93,6 @@ class Nearest:
 
 def plan_tables(scene: Scene, settings: Any) -> Any:
     """The plan of a scene whose scratches all reflect by tables, or as Lambert surfaces."""
-    from dataclasses import replace
-
     import scratchwarp as sw
 
     effects = {**settings.effects, **dict.fromkeys(WITHOUT, False)}
@@ -130,26 +139,37 @@ def lay_out(
     if width * height > _MOST_TEXELS:
         raise ValueError(f"{found.path}: {width} x {height} texels are too many; choose a smaller --density")
     notes = [f"{found.path}: without a uv set; its maps are their means"] if not mapped else []
-    alphas, twos, laid = [], [], []
+    alphas: list[Array] = []
+    laid: list[Laid] = []
+    fates: list[Fate] = []
     for one in plan.layers[material]:
         sub = one.sublayer
-        if sub.distribution == "curves" or one.response >= 0:
-            what = "explicit curves" if sub.distribution == "curves" else f"model {sub.layer.model}"
-            notes.append(f"{sub.layer.label}: {what} cannot be baked and are left out")
+        record = scene.curves[sub.curves] if sub.distribution == "curves" else None
+        ours = shown(found, one)
+        differs = max(sub.layer.width_variation, sub.layer.depth_variation, sub.layer.profile_variation) > 0.0
+        lost = f"model {sub.layer.model} cannot be baked" if one.response >= 0 else ""
+        if record is not None and (record.space != "uv" or not mapped):
+            lost = "explicit curves in space cannot be baked"
+        fates.append(Fate(sub.layer.label, ours, LEFT_OUT if lost else "table", differs))
+        if lost:
+            notes.append(f"{sub.layer.label}: {lost} and are left out")
             continue
-        if mapped:
+        if record is not None:
+            alpha, two = drawn(record, window, (width, height), scale)
+        elif mapped:
             alpha, two = covered(one, window, (width, height), scale)
         else:
             alpha = np.full((1, 1), sub.coverage, np.float32)
             two = np.full((1, 1, 2), (np.cos(2 * sub.angle), np.sin(2 * sub.angle)), np.float32)
         alpha, two = _maps(scene, sub, alpha, two, window, notes)
         alphas.append(alpha)
-        twos.append(two)
-        laid.append(one)
+        unit = 1.0 if record is None or record.width_unit == "um" else float(np.sqrt(abs(scale[0] * scale[1])))
+        wide = sub.layer.width if record is None else unit * float(record.widths.mean())
+        laid.append(Laid(one, alpha, two, wide, ours))
     total = np.sum(alphas, axis=0) if alphas else np.zeros((height, width), np.float32)
     bare = np.prod([1.0 - np.minimum(a, 1.0) for a in alphas], axis=0) if alphas else np.ones((height, width))
     factor = np.divide(1.0 - bare, total, out=np.zeros_like(total), where=total > 0.0)
-    layers = tuple(Laid(one, a * factor, two) for one, a, two in zip(laid, alphas, twos, strict=True))
+    layers = tuple(replace(one, share=one.share * factor) for one in laid)
     kept = sum((x.share for x in layers if x.plan.keeps_diffuse), np.zeros((height, width), np.float32))
     texel = (1e6 * float(extent[0]) / width, 1e6 * float(extent[1]) / height)
     base = _base(scene, found, window, (width, height), notes)
@@ -158,8 +178,9 @@ def lay_out(
         if mesh.colors is not None and np.ptp(mesh.colors.reshape(-1, 3), axis=0).max() > 1e-3:
             notes.append(f"{found.path}: the display colour of {placed.path} counts with its mean")
     return Look(
-        material, found.path, window, mapped, texel, scale, bare.astype(np.float32), kept, layers, base, tuple(notes)
-    )
+        material, found.path, window, mapped, texel, scale, bare.astype(np.float32), kept, layers, base, tuple(notes),
+        tuple(fates),
+    )  # fmt: skip
 
 
 def _window(uv: Array) -> tuple[float, float, float, float]:
@@ -317,14 +338,15 @@ def nearest(look: Look, tables: Sequence[Any]) -> Nearest:
             continue
         table = tables[laid.plan.table]
         square, middle = slopes(table.profile)
-        across, along = min(2.0 * square, 1.0), _ALONG**2
+        spread = DIFFRACTED / laid.width if laid.fate == "diffraction" and laid.width > 0.0 else 0.0
+        across, along = min(2.0 * square + spread**2, 1.0), _ALONG**2
         moment[0] += laid.share * 0.5 * (across + along)
         # v lies across: twice its angle is the scratch's turned by half a turn
         moment[1] -= laid.share * 0.5 * (across - along) * laid.two[..., 0]
         moment[2] -= laid.share * 0.5 * (across - along) * laid.two[..., 1]
         color += mean * f0_of(table.fresnel)
         if laid.plan.sublayer.layer.space == "surface":
-            height += laid.share * middle * laid.plan.sublayer.layer.width
+            height += laid.share * middle * laid.width
     safe = np.maximum(coverage, 1e-9)
     half, cos, sin = moment / safe
     apart = np.hypot(cos, sin)

@@ -1,9 +1,9 @@
 """Export the look of scratched materials for other renderers, and say how far each is from our own picture.
 
-    OUT_DIR/preview/look.usda       a layer over the stage with baked UsdPreviewSurface networks
-    OUT_DIR/materialx/look.mtlx     OpenPBR and standard_surface materials with baked maps
-    OUT_DIR/mitsuba/scene.xml       the scene for Mitsuba 3, with a BSDF that evaluates our tables
-    OUT_DIR/index.html, export.json, pictures
+OUT_DIR/preview/look.usda       a layer over the stage with baked UsdPreviewSurface networks
+OUT_DIR/materialx/look.mtlx     OpenPBR and standard_surface materials with baked maps
+OUT_DIR/mitsuba/scene.xml       the scene for Mitsuba 3, with a BSDF that evaluates our tables
+OUT_DIR/index.html, export.json, pictures
 """
 
 import argparse
@@ -209,8 +209,8 @@ def _mitsuba(
     if degrees is None:
         degrees = 0.0 if all(isinstance(light, DomeLight) for light in scene.lights) else BLUR
     blur = math.radians(degrees)
-    notes = write_scene(scene, plan, tables, folder, options.texels, options.density, blur, depth)
-    made = {"file": "scene.xml", "notes": notes, "how": HOW["mitsuba"], "blur_degrees": degrees}
+    notes, layers = write_scene(scene, plan, tables, folder, options.texels, options.density, blur, depth)
+    made = {"file": "scene.xml", "notes": notes, "how": HOW["mitsuba"], "blur_degrees": degrees, "layers": layers}
     return made, lambda: render(folder, _more(options.spp))
 
 

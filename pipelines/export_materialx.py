@@ -12,6 +12,7 @@ import numpy as np
 
 from . import texture_files
 from .baked_look import Look, Nearest
+from .fates import lost
 
 Array = np.ndarray
 
@@ -58,7 +59,7 @@ def write(pairs: Sequence[tuple[Look, Nearest]], target: Path) -> tuple[list[dic
             _material(document, f"{name}_{'openpbr' if kind == KINDS[0] else kind}", kind, look, near, maps, target)
         width, height = look.size
         records.append({"material": look.path, "texels": [width, height], "texel_um": list(look.texel)})
-        notes += look.notes
+        notes += [*look.notes, *lost(look.fates, rough=True)]
     valid, message = document.validate()
     if not valid:
         raise ValueError(f"{target}: the MaterialX document is not valid: {' '.join(message.split())}")

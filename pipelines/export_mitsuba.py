@@ -20,6 +20,7 @@ import numpy as np
 from scratchwarp.scene import DomeLight, Scene
 
 from .baked_look import Look, Nearest, lay_out
+from .fates import LEFT_OUT, Fate, lost
 from .mitsuba_lights import Node, Vector, emitters
 
 Array = np.ndarray
@@ -52,8 +53,9 @@ def write_scene(
     blur: float = 0.0,
     depth: int = 1,
     rough: Mapping[int, Nearest] | None = None,
-) -> list[str]:
-    """Write the folder and return what could not be said in Mitsuba's words.
+) -> tuple[list[str], list[dict[str, Any]]]:
+    """Write the folder and return what could not be said in Mitsuba's words, and of each layer how we render it
+    (``ours``), how the BSDF does (``bsdf``), and whether that is the same.
 
     ``tables``: the plan's, simulated. ``longest``, ``density``: of ``baked_look.lay_out``. ``blur``: of the cones of
     scratches [rad]. ``depth``: bounces of light, 1 for direct light. ``rough``: material -> the rough surface that is
@@ -68,6 +70,7 @@ def write_scene(
     (folder / "render.py").write_text(_RENDER, encoding="utf-8")
     write_tables(tables, folder / "materials" / "tables.npz")
     notes: list[str] = []
+    fates: dict[str, Fate] = {}
     rough = rough or {}
     nodes: list[tuple[str, dict[str, Any]]] = []
     exposure = scene.camera.exposure
@@ -81,7 +84,8 @@ def write_scene(
             mine = arrays["material"] == material
             write_ply(folder / "meshes" / f"{stem}.ply", *(arrays[name][mine] for name in ("world", "normals", "uv")))
             look = lay_out(scene, plan, int(material), longest, density, number)
-            notes += look.notes
+            notes += [*look.notes, *lost(look.fates, rough=False)]
+            fates |= {fate.layer: fate for fate in look.fates}
             write_material(look, folder / "materials" / f"{stem}.npz", blur, rough.get(int(material)))
             shape: dict[str, Any] = {"filename": f"meshes/{stem}.ply", "bsdf": _bsdf(look, stem, notes)}
             if instance.light >= 0:
@@ -99,7 +103,16 @@ def write_scene(
         "sensor": camera(scene, plan, notes),
     }
     (folder / "scene.xml").write_text(xml([*document.values(), *nodes]), encoding="utf-8")
-    return list(dict.fromkeys(notes))
+    rows = [
+        {
+            "layer": fate.layer,
+            "ours": fate.ours,
+            "bsdf": fate.baked if fate.baked == LEFT_OUT or fate.ours != "Lambert" else fate.ours,
+            "same": fate.baked != LEFT_OUT and fate.ours in ("table", "Lambert") and not fate.differs,
+        }
+        for fate in fates.values()
+    ]
+    return list(dict.fromkeys(notes)), rows
 
 
 def _bsdf(look: Look, stem: str, notes: list[str]) -> Node:

@@ -19,6 +19,7 @@ from scratchwarp.stage.overlay import check_target, overlay, save_layer
 
 from . import texture_files
 from .baked_look import Look, isotropic, lay_out, nearest, plan_tables
+from .fates import lost
 
 Array = np.ndarray
 
@@ -101,7 +102,8 @@ def write(
     states: dict[str, list[Baked]] = {}
     for name, session in chosen(source, variants):
         states[name] = bake(sw.read(source, session_layer=session), settings, longest, density, pattern)
-    notes = [note for one in states.values() for baked in one for note in baked.look.notes]
+    looks = [baked.look for one in states.values() for baked in one]
+    notes = [note for look in looks for note in (*look.notes, *lost(look.fates, rough=True))]
     records = []
     first = next(iter(states.values()))
     for number, baked in enumerate(first):

@@ -4,13 +4,18 @@ import json
 import os
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from pxr import Usd, UsdShade
 
+import scratchwarp as sw
 from scratchwarp import image
 from scratchwarp.pipelines import demo_shapes, demo_usd, export
+from scratchwarp.pipelines.baked_look import lay_out, nearest, plan_tables
+from scratchwarp.pipelines.drawn_curves import drawn
+from scratchwarp.scene import Curves
 
 BALL = """#usda 1.0
 (
@@ -115,7 +120,6 @@ def test_preview_opens_without_our_schemas(exported):
 
 
 def test_preview_is_near_and_leaves_our_picture_alone(exported):
-    import scratchwarp as sw
     from scratchwarp.stage.validation import validate
 
     stage, out, record = exported
@@ -173,3 +177,54 @@ def test_again_gives_the_same_files(exported, tmp_path):
     (tmp_path / "mine.txt").write_text("mine")
     assert export.main([str(stage), str(tmp_path), *options]) == 1
     assert (tmp_path / "mine.txt").read_text() == "mine"
+
+
+def test_what_cannot_be_carried_is_said_by_prim_and_layer(exported, tmp_path):
+    """Layers that diffract and layers laid out groove by groove, in each target."""
+    stage, _, _ = exported
+    plain = stage.read_text()
+    waved = plain
+    for one, model in (("brush", "groove"), ("handling", "diffraction")):
+        field = f'uniform token scratch:layer:{one}:model = "{model}"'
+        waved = waved.replace(f"float scratch:layer:{one}:angle", f"{field}\n        float scratch:layer:{one}:angle")
+    waved = waved.replace('"ScratchLayerAPI:handling"]', '"ScratchLayerAPI:handling", "ScratchWaveAPI"]')
+    assert waved.count("model") == 2 and "ScratchWaveAPI" in waved
+    image.write_layers({"color": sky().astype(np.float32)}, tmp_path / "sky.exr")
+    (tmp_path / "waved.usda").write_text(waved)
+    options = ["--texels", "32", "--no-pictures", "--quiet"]
+    assert export.main([str(tmp_path / "waved.usda"), str(tmp_path / "out"), *options]) == 0
+    record = json.loads((tmp_path / "out" / "export.json").read_text())["targets"]
+    for target in ("preview", "materialx", "mitsuba"):
+        notes = record[target]["notes"]
+        assert any("/World/gold" in n and "handling" in n and "diffracts" in n for n in notes), notes
+        assert any("/World/gold" in n and "brush" in n and "groove by groove" in n for n in notes), notes
+    rows = record["mitsuba"]["layers"]
+    assert [row["ours"] for row in rows] == ["grooves", "diffraction"]
+    assert all(row["bsdf"] == "table" and not row["same"] for row in rows)
+
+
+def test_light_that_diffracts_is_spread_by_roughness(exported):
+    scene = sw.read(exported[0])
+    plan = plan_tables(scene, sw.Settings())
+    look = lay_out(scene, plan, 0, 16)
+    small = replace(look, layers=tuple(replace(one, width=1.0) for one in look.layers))
+    waved = replace(small, layers=tuple(replace(one, fate="diffraction") for one in small.layers))
+    before, after = (nearest(one, plan.tables) for one in (small, waved))
+    covered = before.coverage > 0.1
+    grown = after.wide[covered] ** 2 - before.wide[covered] ** 2
+    assert np.all(grown > 0.0) and np.all(grown <= (0.34 * 0.55) ** 2 + 1e-6)
+    assert np.array_equal(before.color, after.color)
+
+
+def test_curves_are_drawn_on_texels():
+    """A slanted line of 40 um across a square of 1 mm: its area, its place and its direction; outside of the window
+    nothing."""
+    points = np.array([[0.2, 0.3, 0.0], [0.6, 0.6, 0.0], [2.0, 2.0, 0.0], [3.0, 2.0, 0.0]])
+    line = Curves("/c", points, np.array([2, 2]), np.full(4, 40.0), np.full(4, 10.0), space="uv")
+    alpha, two = drawn(line, (0.0, 0.0, 1.0, 1.0), (100, 100), (1000.0, 1000.0))
+    assert abs(alpha.sum() * 100.0 - 500.0 * 40.0) < 0.02 * 500.0 * 40.0  # texels of 10 um; ends share theirs
+    assert alpha.max() > 0.99 and alpha[55, 40] > 0.99 and alpha[20, 40] == 0.0  # v = 0.45, 0.8
+    angle = 2.0 * np.arctan2(0.3, 0.4)
+    assert np.allclose(two[55, 40], (np.cos(angle), np.sin(angle)), atol=1e-5)
+    mirrored, turned = drawn(line, (0.0, 0.0, 1.0, 1.0), (100, 100), (1000.0, -1000.0))
+    assert np.allclose(turned[55, 40], (np.cos(angle), -np.sin(angle)), atol=1e-5) and mirrored[55, 40] > 0.99
