@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from scratchwarp.scene import Scene
+from scratchwarp.scene.digest import digest
 
 from .colors import BACKGROUND
 from .display import canvas
@@ -27,6 +28,8 @@ class Preview:
         self._open = ExitStack()
         self._plotter: Any = None
         self._shown: tuple[Any, ...] = ()
+        self._lit = ""
+        self._lights: list[Any] = []
 
     def picture(self, scene: Scene, size: tuple[int, int]) -> np.ndarray:
         """Meshes, scratches and lights from the scene's camera, uint8 [h, w, 3] of ``size`` (width, height).
@@ -45,21 +48,33 @@ class Preview:
             self._plotter = self._open.enter_context(canvas(True, size))
             self._plotter.set_background(BACKGROUND)
             self._plotter.disable_anti_aliasing()
-        # what is drawn but for the eye
-        drawn = (scene.meshes, scene.instances, scene.materials, scene.curves, scene.lights)
+        # records that were read again are others, though equal
+        drawn = (scene.meshes, scene.curves, digest(scene.instances, scene.materials))
         if drawn != self._shown:
-            self._fill(scene, size)
-            self._shown = drawn
+            self._fill(scene)
+            self._shown, self._lit = drawn, ""
+        if digest(scene.lights) != self._lit:
+            self._light(scene)
+            self._lit = digest(scene.lights)
         self._plotter.window_size = list(size)
         look_through(self._plotter, scene, size)
+        self._plotter.render()  # a picture alone shows what was drawn last
         return np.array(self._plotter.screenshot(return_img=True))[..., :3]
 
-    def _fill(self, scene: Scene, size: tuple[int, int]) -> None:
-        from . import camera, curves, directions, meshes
+    def _fill(self, scene: Scene) -> None:
+        from . import curves, directions, meshes
 
         self._plotter.clear_actors()
+        self._lights = []
         meshes.add(self._plotter, scene)
         directions.add(self._plotter, scene)
         curves.add(self._plotter, scene)
-        for actor in camera.lights(self._plotter, scene):
+
+    def _light(self, scene: Scene) -> None:
+        from . import camera
+
+        for actor in self._lights:
+            self._plotter.remove_actor(actor, render=False)
+        self._lights = list(camera.lights(self._plotter, scene))
+        for actor in self._lights:
             actor.prop.line_width = 1.0

@@ -10,6 +10,7 @@ from scratchwarp.stage import LiveStage
 from .look_stage import DEPTH, METAL
 
 playwright = pytest.importorskip("playwright.sync_api")
+WebView = pytest.importorskip("scratchwarp.viewers.web.server").WebView
 CHROMIUM = next(
     (path for name in ("chromium", "chromium-browser", "google-chrome") if (path := shutil.which(name))), None
 )
@@ -112,6 +113,22 @@ def test_every_fold_of_the_panel_opens(page):
     assert page.locator(".control .label").first.get_attribute("title")
 
 
+def test_what_a_stage_says_is_text(server, page):
+    """Nothing of it is taken for a template or for HTML, which the page would run."""
+    name = f"{METAL}.scratch:layer:fine:maskPrimvar"
+    for odd in ("{{ 7 * 7 }}", "<img src=x onerror='throw 1'>"):
+        box = page.locator(f'.control[data-id="{name}"] input')
+        box.fill(odd)
+        box.press("Enter")
+        end = time.monotonic() + 60
+        while odd not in [c.value for c in server.looking.shown.controls]:
+            assert time.monotonic() < end
+            time.sleep(0.02)
+        page.reload()
+        page.wait_for_selector("#look")
+        assert box.input_value() == odd and page.locator("#panel img").count() == 0
+
+
 def test_layers_are_switched_and_reordered(server, page):
     finished(page)
     before = picture(page)
@@ -173,3 +190,13 @@ def test_camera_light_pixel_before_and_save(server, page, tmp_path_factory):
     until(page, "() => document.getElementById('redone').textContent.startsWith('saved')")
     values = {c.id: c.value for c in server.looking.shown.controls}
     assert {c.id: c.value for c in LiveStage(server.target).controls()} == values
+
+
+def test_a_page_whose_server_ended_says_so(server, chromium, tmp_path):
+    with WebView(server.looking, tmp_path / "look.usda") as other:
+        left = chromium.new_context().new_page()
+        left.goto(other.guard.link())
+        left.wait_for_selector("#look")
+    left.wait_for_selector("#gone")
+    assert "does not answer" in left.inner_text("#gone")
+    left.context.close()

@@ -21,6 +21,7 @@ from .wishes import Wish, Wishes
 
 # All of it is in page/look.js. What a stage says goes there as data, never into this text, which browsers compile.
 _TEMPLATE = '<scratch-look :look="look" :before="before" :values="values" :controls="controls" :about="about" />'
+_GONE = "<scratch-gone />"
 # Seconds between looks at whether the server shall end.
 _TICK = 0.2
 
@@ -89,7 +90,7 @@ class WebView:
         server.enable_module({"www": vue3.www, "vue_use": ["scratchwarp"]})
         shown = self.looking.shown
         server.state.update({
-            "trame__title": Path(self.looking.stage).name, "before": 0,
+            "trame__title": Path(self.looking.stage).name, "trame__template_error_reconnect": _GONE, "before": 0,
             "look": answers.state(shown), "values": answers.values(shown),
             "controls": [answers.described(c) for c in shown.controls],
             "about": {

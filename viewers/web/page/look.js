@@ -139,4 +139,17 @@ const Look = {
   },
 };
 
-window.scratchwarp = { install: (app) => app.component("ScratchLook", Look) };
+// In the place of all that, while the server does not answer.
+const Gone = {
+  name: "Gone",
+  inject: ["trame"],
+  template: `<p id="gone" role="alert">The viewer does not answer; it is asked again every second.</p>`,
+  mounted() {
+    this.timer = setInterval(async () => {
+      try { await this.trame.connect(); } catch { /* it is still away */ }
+    }, 1000);
+  },
+  beforeUnmount() { clearInterval(this.timer); },
+};
+
+window.scratchwarp = { install: (app) => app.component("ScratchLook", Look).component("ScratchGone", Gone) };
