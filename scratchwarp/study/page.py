@@ -37,6 +37,7 @@ tr.front td { font-weight: 700; }
 figure { margin: 0; width: 10.5rem; } figure img { width: 100%; display: block; image-rendering: pixelated; }
 figcaption { color: #555; font-size: .8rem; }
 svg { max-width: 52rem; width: 100%; }
+.wide { overflow-x: auto; }
 """
 
 
@@ -61,6 +62,9 @@ def page(report: Report) -> str:
     ]
     facts = "".join(f"<tr><td>{html.escape(n)}</td><td style='text-align:left;white-space:normal'>"
                     f"{html.escape(str(v))}</td></tr>" for n, v in says)  # fmt: skip
+    told = [row for row in report.rows if len(row.knobs) < 2 or row.front]
+    more = len(report.rows) - len(told)
+    others = f"<p>{more} settings of several knobs off the front are in report.csv.</p>" if more else ""
     strips = "".join(_strip(report, name, rows) for name, rows in lines.items())
     papers = "".join(f"<li>{html.escape(paper)}</li>" for paper in PAPERS)
     reference = _figure(report.reference, "reference")
@@ -82,7 +86,7 @@ dot to see what it is.</p>
 <h2>Knob by knob</h2>
 <p>Above the image of each value, below it how far it is from the reference, {DIFFERENCE:g} times as bright.</p>
 {strips}
-<h2>All settings</h2>
+<h2>Settings</h2>
 <p>Seconds are those of planning, simulating tables and tracing; compiling, which is done once, stands by itself. Rounds
 render every setting in turns: a setting's seconds are its ratio to the defaults of the same round, times the defaults'
 median, so that a slow moment of the machine does not count; the range is over rounds. relMSE is the mean over pixels of
@@ -90,7 +94,7 @@ the squared difference over the squared luminance of the reference (plus a hundr
 same against the knob's own reference value with the same samples: noise cancels, and what is left is what the knob
 does. Tables is the share of the light that tables themselves send elsewhere, against tables at the reference values of
 all knobs. FLIP is the difference seen when flipping between two images, 0 to 1.</p>
-{_table(report.rows)}
+{_table(told)}{others}
 <h2>How it was measured</h2>
 <table>{facts}</table>
 <h2>Sources</h2>
@@ -117,8 +121,8 @@ def _table(rows: Sequence[Row]) -> str:
         marked = ' class="front"' if row.front else ""
         lines.append(f"<tr{marked}>{''.join(f'<td>{cell}</td>' for cell in cells)}</tr>")
     return (
-        f"<table><thead><tr>{''.join(f'<th>{name}</th>' for name in head)}</tr></thead>"
-        f"<tbody>{''.join(lines)}</tbody></table>"
+        f"<div class='wide'><table><thead><tr>{''.join(f'<th>{name}</th>' for name in head)}</tr></thead>"
+        f"<tbody>{''.join(lines)}</tbody></table></div>"
     )
 
 

@@ -27,7 +27,7 @@ from ..scene.knob import Value
 from ..whole import whole
 from .measurement import PARTS, Measurement, Notebook, setting_name
 from .measures import flip, rel_mse
-from .report import Report
+from .report import Report, file_name
 from .table_error import table_error, tables_of
 
 REFERENCE_FACTOR = 4
@@ -148,14 +148,25 @@ class _Study:
 
     def known_reference(self, progress: Progress) -> None:
         """Render the reference, or find it in the folder."""
-        file = None if self.folder is None else self.folder / f"reference-{self.key}.npy"
+        file = self._kept("")
         if file is not None and file.is_file():
             self.reference = np.load(file, allow_pickle=False)
             return
         self.reference, _ = self._rendered(self.best, REFERENCE_SEED, progress)
+        self._keep("", self.reference)
+
+    def _kept(self, name: str) -> Path | None:
+        """Where an image lies between calls; "" is the reference."""
+        if self.folder is None:
+            return None
+        return self.folder / ".images" / f"{self.key}-{file_name(name) or 'reference'}.npy"
+
+    def _keep(self, name: str, image: np.ndarray) -> None:
+        file = self._kept(name)
         if file is not None:
+            file.parent.mkdir(parents=True, exist_ok=True)
             with whole(file) as draft, draft.open("wb") as stream:
-                np.save(stream, self.reference)
+                np.save(stream, image)
 
     def seed(self, repeat: int) -> int:
         """The seed of a round."""
@@ -179,7 +190,9 @@ class _Study:
         table = self._table_error(knobs) if repeat == 0 else None
         row = Measurement(dict(knobs), repeat, seconds, base, error, bias, flip(image, self.reference), seed, table)
         self.book.add(row)
-        self.images.setdefault(name, image)
+        if len(knobs) < 2 and name not in self.images:
+            self.images[name] = image
+            self._keep(name, image)
         return time.perf_counter() - start
 
     def _table_error(self, knobs: Setting) -> float | None:
@@ -221,10 +234,11 @@ class _Study:
 
     def report(self, seconds: float) -> Report:
         """What is known so far."""
-        shown = {row.name: row.knobs for row in Report.rows_of(self.book.rows)}
-        for name, knobs in shown.items():
-            if name not in self.images and self.folder is not None:  # measured before an interruption
-                self.images[name] = self._rendered(dict(knobs), self.seed(0))[0]
+        shown = [row.name for row in Report.rows_of(self.book.rows) if len(row.knobs) < 2]
+        for name in shown:
+            file = self._kept(name)
+            if name not in self.images and file is not None and file.is_file():  # measured before an interruption
+                self.images[name] = np.load(file, allow_pickle=False)
         pictures = {name: self.images[name] for name in shown if name in self.images}
         about: dict[str, Any] = {
             "stage": self.scene.path,
