@@ -1,7 +1,7 @@
 """Facets of glass: how much goes through, and which way.
 
 A facet reflects F, lets through ``clear`` (1 - F) and leaves the rest to its diffuse lobe, F the exact reflectance of a
-dielectric, from either side (beyond the critical angle 1). Rough facets refract at GGX micro-facets (Walter et al.
+dielectric, from either side (beyond the critical angle 1); from within the diffuse lobe is that of what lies behind. Rough facets refract at GGX micro-facets (Walter et al.
 2007). Radiance is not scaled by the square of the index: what goes in comes out again.
 """
 
@@ -9,9 +9,13 @@ import warp as wp
 
 from ..optics.fresnel_device import fresnel_dielectric
 from ..optics.microfacets_device import ggx_g1, ggx_sample_visible
-from ..reflectance.base_device import DELTA_ALPHA, DIELECTRIC, Base, mean3
+from ..optics.sampling_device import sample_cosine_hemisphere
+from ..reflectance.base_device import DELTA_ALPHA, DIELECTRIC, Base, BaseSample, mean3
 
 wp.set_module_options({"enable_backward": False})
+
+
+MEAN_STEPS = wp.constant(16)
 
 
 @wp.struct
@@ -51,6 +55,42 @@ def chance_through(b: Base, wo: wp.vec3, clear: float, w_diffuse: float) -> floa
         # micro-facets pass where the facet as a whole does not, and the other way round
         result = wp.clamp(result, 0.1 * wp.min(clear, 1.0), 0.9)
     return result
+
+
+@wp.func
+def mean_passed(ior: float) -> float:
+    """1 - F, averaged over all directions by their cosines (to 0.1 %); below an index of 1 most are totally
+    reflected."""
+    n = wp.max(ior, 1.0 / ior)
+    total = float(0.0)
+    for k in range(MEAN_STEPS):
+        c = (float(k) + 0.5) / float(MEAN_STEPS)
+        total += 2.0 * c * (1.0 - fresnel_dielectric(c, n))
+    denser = wp.min(ior, 1.0)
+    return denser * denser * total / float(MEAN_STEPS)
+
+
+@wp.func
+def chance_shed(b: Base, wo: wp.vec3, chance: float, w_diffuse: float) -> float:
+    """How often, from within, to leave by what is neither reflected nor gone through: by the diffuse lobe.
+
+    ``chance``: of going through.
+    """
+    f = fresnel_dielectric(wo[2], b.ior)
+    shed = w_diffuse * (1.0 - f) * mean3(b.diffuse)
+    return (1.0 - chance) * wp.min(shed / wp.max(shed + f, 1.0e-6), 0.9)
+
+
+@wp.func
+def shed_within(b: Base, wo: wp.vec3, u: wp.vec2, w_diffuse: float, chance: float) -> BaseSample:
+    """A direction of the diffuse lobe from within, where pigment lies behind the surface: light passes it twice,
+    diffuse (1 - F(o)) (1 - F(i)) / (pi mean(1 - F)); ``chance``: of having asked."""
+    s = BaseSample()
+    s.wi = sample_cosine_hemisphere(u)
+    s.pdf = 1.0
+    passed = (1.0 - fresnel_dielectric(wo[2], b.ior)) * (1.0 - fresnel_dielectric(s.wi[2], b.ior))
+    s.weight = (w_diffuse * passed / (wp.max(mean_passed(b.ior), 1.0e-6) * wp.max(chance, 1.0e-6))) * b.diffuse
+    return s
 
 
 @wp.func

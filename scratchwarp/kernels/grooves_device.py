@@ -20,7 +20,7 @@ from ..reflectance.grooves.near_device import find_near
 from .bounce_device import Scatter
 from .geometry_device import Geometry, Surface, uv_motion
 from .groove_arrays_device import GROOVE_ROOM, FacetStuff, GrooveArrays, GrooveSpot
-from .groove_glass_device import chance_through, from_within, glass_base, refracted
+from .groove_glass_device import chance_shed, chance_through, from_within, glass_base, refracted, shed_within
 from .groove_light_device import GRAZING, facet_base, in_pattern, make_facet_lit, normal_of, out_of_pattern
 from .key import KernelKey
 from .lobe_device import Lobe, largest, mirrored_at
@@ -256,12 +256,18 @@ def make_grooves(key: KernelKey, transmittance):
                     )  # fmt: skip
                     result.received += wp.cw_mul(wp.vec4(weight[0], weight[1], weight[2], 1.0), received)
                 b = BaseSample()
-                if choice >= chance:
-                    choice = (choice - chance) / (1.0 - chance)
+                shed = float(0.0)  # chance of the diffuse lobe from within
+                if wp.static(key.groove_glass):
+                    if inside == 1 and stuff.w_diffuse > 0.0:
+                        shed = chance_shed(base, own_wo, chance, stuff.w_diffuse)
+                if choice >= chance + shed:
+                    choice = (choice - chance - shed) / (1.0 - chance - shed)
                     b = base_sample(base, own_wo, drawn, choice, stuff.w_diffuse, stuff.w_specular)
                     if wp.static(key.groove_glass):
-                        b.pdf *= 1.0 - chance
-                        b.weight = b.weight / (1.0 - chance)
+                        b.pdf *= 1.0 - chance - shed
+                        b.weight = b.weight / (1.0 - chance - shed)
+                elif wp.static(key.groove_glass) and choice >= chance:
+                    b = shed_within(base, own_wo, drawn, stuff.w_diffuse, shed)
                 elif wp.static(key.groove_glass):
                     gone = refracted(base, own_wo, drawn, stuff.clear, chance)
                     b.wi = gone.wi

@@ -322,7 +322,7 @@ def make_kernel(key: KernelKey):
                             if wp.static(key.groove_glass):
                                 if depth >= most:
                                     received = wp.vec4(0.0, 0.0, 0.0, received[3])
-                                    out.alive = wp.where(crossed == 1, out.alive, 0)
+                                    out.alive = wp.where(crossed == 1 or within == 1, out.alive, 0)
                             lit = wp.cw_mul(throughput, wp.vec3(received[0], received[1], received[2]))
                             if wp.static(key.tints):
                                 if lobe.scratch == 1:
@@ -362,7 +362,7 @@ def make_kernel(key: KernelKey):
                                 start = p
                                 if wp.static(key.groove_glass):
                                     start = onward
-                                    if crossed == 1:
+                                    if crossed == 1 or within == 1:
                                         most = wp.min(most + 1, window.max_depth + wp.static(MOST_PASSES))
                                 origin = start
                                 gone = 0.0
