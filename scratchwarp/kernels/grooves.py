@@ -201,7 +201,7 @@ def _pattern(
     for plan, number, own_curves, sets in zip(groove.layers, numbers, curves, regular, strict=True):
         laid = [path for path, _, _ in sets] if steps is not None and sets is not None else None
         if laid is None:
-            laid = lay_out(plan.layer, low, high, scale, hand, own_curves)
+            laid = lay_out(plan.layer, low, high, scale, hand, own_curves, MOST_PATHS - joined.laid - len(paths))
         paths += laid
         drawn: dict[tuple[float, float], Array] = {}  # grooves of one size share a section
         for path in laid:
@@ -209,10 +209,10 @@ def _pattern(
                 drawn[path.width, path.depth] = _section(plan, path)
             sections.append(drawn[path.width, path.depth])
         own += [number] * len(laid)
-        if len(paths) > MOST_PATHS:
+        if joined.laid + len(paths) > MOST_PATHS:
             raise ValueError(
-                f"{plan.layer.label}: it calls for {len(paths)} grooves, more than {MOST_PATHS}; set its model to "
-                "table, or make them longer or wider"
+                f"{plan.layer.label}: with it {joined.laid + len(paths)} grooves are laid out, more than {MOST_PATHS}; "
+                "set its model to table, or make them longer or wider"
             )
     ends = [dict(plan.layer.extra).get("ends", "cap") for plan in groove.layers]
     scales = [path.scales for path in paths]

@@ -55,14 +55,21 @@ def repeated(
 
 
 def lay_out(
-    layer: Layer, low: Array, high: Array, scale: Array, handed: float = 1.0, curves: Sequence[Curves] = ()
+    layer: Layer,
+    low: Array,
+    high: Array,
+    scale: Array,
+    handed: float = 1.0,
+    curves: Sequence[Curves] = (),
+    most: int = MOST_LINES,
 ) -> list[Path]:
     """The scratches of ``layer`` over uv from ``low`` to ``high``, on a surface of ``scale`` micrometres a unit of u
     and of v. ``handed`` -1: of a mirrored mapping, angles turn the other way in uv and v counts backwards; the result
     does as well. ``curves``: of distribution curves, in uv.
 
     Regular patterns reach a little beyond the rectangle; those with a variation have widths and depths of their own.
-    Raises ValueError where that would be more than ``MOST_LINES`` lines or ``MOST_CORNERS`` corners of rings.
+    Raises ValueError where that would be more than ``MOST_LINES`` lines or ``MOST_CORNERS`` corners of rings, or more
+    than ``most`` scratches laid at random.
     """
     size = np.asarray(scale, float) * (1.0, handed)  # micrometres a unit of u and of mirrored v
     if layer.distribution == "curves" or layer.distribution in ("worley", "random"):
@@ -70,6 +77,7 @@ def lay_out(
         if layer.distribution != "curves":
             unit = np.asarray(scale, float) if layer.space == "surface" else np.ones(2)
             own = [random_scratches(layer, tuple(low.tolist()), tuple(high.tolist()), tuple(unit.tolist()))]
+            _bounded(layer, len(own[0].counts), most, "grooves", "coverage less")
         return _perturbed(layer, [path for set in own for path in _polylines(set, size)], size)
     plane = size if layer.space == "surface" else np.array([1.0, handed])  # from uv to the layer's own plane
     corners = np.array([[u, v] for u in (low[0], high[0]) for v in (low[1], high[1])]) * plane
@@ -154,11 +162,11 @@ def _polylines(curves: Curves, size: Array) -> list[Path]:
     return made
 
 
-def _bounded(layer: Layer, count: float, most: int, what: str) -> None:
+def _bounded(layer: Layer, count: float, most: int, what: str, remedy: str = "pitch larger") -> None:
     if not count <= most:
         raise ValueError(
             f"{layer.label}: it calls for {count:.3g} {what}, more than {most}; set its model to table, or make its "
-            "pitch larger"
+            f"{remedy}"
         )
 
 

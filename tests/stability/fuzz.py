@@ -46,6 +46,8 @@ from .stages import stage
 
 LIMIT = 60
 """Seconds of this process that one stage may take, compiling aside: its own, whatever else the machine does."""
+COMPILING = 30
+"""Seconds of a process that compiling one kernel takes at most."""
 MEMORY = 12 << 30
 """Bytes of address space of a batch."""
 FINE = ("image", "refused", "built")
@@ -206,6 +208,16 @@ def _image_fault(folder, bench):
     return ""
 
 
+def _as_shipped(argv):
+    """(status, what was said) of the command line by itself, kernels optimised: None where it takes more than LIMIT
+    and what it takes to compile."""
+    seconds = LIMIT + COMPILING
+    bounded = f"import resource, sys; resource.setrlimit(resource.RLIMIT_CPU, ({seconds}, {seconds})); "
+    bounded += "from scratchwarp.cli import main; sys.exit(main(sys.argv[1:]))"
+    done = subprocess.run([sys.executable, "-c", bounded, *argv], capture_output=True, text=True)
+    return None if done.returncode in (-signal.SIGKILL, -signal.SIGXCPU) else (done.returncode, done.stderr)
+
+
 def _verdict(status, said, folder, before, bench):
     after = {p.name for p in folder.iterdir()}
     lines = [line for line in said.strip().splitlines() if line]
@@ -252,6 +264,8 @@ def run_one(seed, folder, compiled=None, kernels=24, wanted=every):
                 what, text = fault.split(":")[0], fault
     except Hang:
         what, text = "hang", "".join(traceback.format_exc())[-2000:]
+        if "in launch" in text and (shipped := _as_shipped(argv)):  # tracing, by kernels without optimisation
+            what, text = _verdict(*shipped, folder, before, bench)
     except BaseException:
         if isinstance(sys.exc_info()[1], KeyboardInterrupt):
             raise

@@ -135,18 +135,21 @@ class Pattern:
         pieces: list[dict[str, Any]] = []
         vertices: list[np.ndarray] = []
         known: dict[bytes, int] = {}
+        shared: dict[int, dict[str, Any]] = {}  # what many grooves have of one section
         total = 0
         for groove in self.paths:
-            key = groove.section.tobytes()
-            if key not in known:
-                runs = run_boxes(groove.section)
-                known[key] = total + len(runs)
-                vertices += [runs, groove.section]
-                total += len(runs) + len(groove.section)
+            section = groove.section
+            if id(section) not in shared:
+                key = section.tobytes()
+                if key not in known:
+                    runs = run_boxes(section)
+                    known[key] = total + len(runs)
+                    vertices += [runs, section]
+                    total += len(runs) + len(section)
+                extent = {"low": section.min(0), "high": section.max(0)}
+                shared[id(section)] = {"first": known[key], "count": len(section), **extent, "taper": -1}
             for piece in self._pieces(groove, len(pieces)):
-                low, high = groove.section.min(0), groove.section.max(0)
-                own = {"first": known[key], "count": len(groove.section), "low": low, "high": high, "taper": -1}
-                pieces.append({**own, **piece, "path": groove.number})
+                pieces.append({**shared[id(section)], **piece, "path": groove.number})
         z = np.array([p[name][1] for p in pieces for name in ("low", "high")] or [0.0])
         x = np.array([p[name][0] for p in pieces for name in ("low", "high")] or [1.0])
         record: Any = Piece

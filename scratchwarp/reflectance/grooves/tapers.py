@@ -34,6 +34,8 @@ def tangents(points: np.ndarray) -> np.ndarray:
 def simplified(row: Row) -> Row:
     """Without zero-length segments, then without vertices in which the path goes straight on (but for those at which
     its scale may change its pace)."""
+    if len(row.points) == 2 and row.scales is None and row.points[0].tolist() != row.points[1].tolist():
+        return row
     keep = np.concatenate([[True], np.any(np.diff(row.points, axis=0) != 0.0, axis=1)])
     points = row.points[keep]
     if row.scales is not None:
