@@ -164,6 +164,7 @@ def assemble(
     ``parts``: what was built for an earlier scene or plan on this device; what is the same is taken from there.
     ``progress``: called with (done, total, what) by what takes long.
     """
+    changing = parts is not None
     parts = parts or Parts()
     key = kernel_key(scene, plan)
     with_mesh_lights = any(isinstance(r, MeshLight) for r in scene.lights)
@@ -238,7 +239,9 @@ def assemble(
     last = parts.last("tables")
     earlier = None if last is None or last[0][0] != key.closed_form else (last[0][1:], last[1])
     scratch_set.tables = parts.part(
-        "tables", (key.closed_form, *tables), lambda: profile_table.pack(tables, device, earlier, key.closed_form)
+        "tables",
+        (key.closed_form, *tables),
+        lambda: profile_table.pack(tables, device, earlier, key.closed_form, roomy=changing),
     )
     used = plan.responses if key.responses else ()
     responding = parts.part(

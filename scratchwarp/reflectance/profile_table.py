@@ -10,6 +10,7 @@ from ..profiles.theta import theta_model
 from .profile_table_device import TableArrays
 
 RENDERED = ("gamma", "quadratic", "table")  # theta models that the device reads, from the cheapest
+SPARE = 2  # tables that there is room for where tables will change
 SUMMED = RENDERED[1:]  # those whose integrals along a cone follow from sums of their rows
 _LUMINANCE = (0.2126, 0.7152, 0.0722)
 
@@ -98,6 +99,7 @@ def pack(
     device: str = "cpu",
     earlier: tuple[Sequence[Any], TableArrays] | None = None,
     summed: bool = False,
+    roomy: bool = False,
 ) -> TableArrays:
     """Device arrays of ``profiles`` tables, all of one resolution, each of a theta model in ``RENDERED``.
 
@@ -105,11 +107,16 @@ def pack(
         earlier: tables packed before, likewise, and their arrays: what is in them is taken from there, and they are
             written over where only some tables are others.
         summed: with the sums that integrals along a cone need; ValueError on a table that varies by "gamma" then.
+        roomy: with room for ``SPARE`` more tables, so that later ones find a place among ``earlier`` ones.
     """
-    if earlier is not None and not wp.get_device(device).is_cpu:
-        earlier = None  # what comes back from another device is slower than packing anew
+    if not wp.get_device(device).is_cpu:
+        earlier, roomy = None, False  # what comes back from another device is slower than packing anew
     if earlier is not None and _replaced(tables, *earlier, summed):
         return earlier[1]
+    if earlier is not None and roomy:
+        found = _fitted(tables, *earlier, summed)
+        if found is not None:
+            return found
     packed = TableArrays()
     bins = len(tables[0].weights) if tables else 1
     packed.bins = bins
@@ -131,6 +138,9 @@ def pack(
         if summed:
             first_sum[k] = sum(r.shape[1] for r in running)
             running.append(known[1] if known else _sums(table, one))
+    if roomy:  # beside the widest of them
+        rows += [np.zeros_like(max(rows, key=lambda r: r.shape[1]))] * SPARE if rows else []
+        running += [np.zeros_like(max(running, key=lambda r: r.shape[1]))] * SPARE if running else []
     every = np.concatenate(rows, axis=1) if rows else np.zeros((1, 1, 1, 3), np.float32)
     packed.slices = wp.array(every, dtype=wp.vec3, device=device)
     packed.mirror = wp.array(mirror, dtype=float, device=device)
@@ -144,10 +154,67 @@ def pack(
     return packed
 
 
+def _count(first: int, steps: int) -> int:
+    """Rows that a table has in ``slices``."""
+    return 0 if first < 0 else steps + 1 if steps else 3
+
+
+def _fitted(tables: Sequence[Any], old: Sequence[Any], packed: TableArrays, summed: bool) -> Any:
+    """Other tables than the ``old`` ones in their large arrays: those that are known stay where they are, others go
+    where there is room. None, with nothing done, where there is too little."""
+    if not tables or any(len(t.weights) != packed.bins for t in tables):
+        return None
+    there = {id(t): k for k, t in enumerate(old)}
+    first, steps, first_sum = (a.numpy() for a in (packed.first, packed.steps, packed.first_sum))
+    slices, sums = packed.slices.numpy(), packed.sums.numpy()
+    known = [there.get(id(t)) for t in tables]
+    made = {i: _packed(t) for i, (t, k) in enumerate(zip(tables, known, strict=True)) if k is None}
+    counts = {k: _count(int(first[k]), int(steps[k])) for k in known if k is not None}
+    taken = {(int(first[k]), int(first[k]) + count) for k, count in counts.items() if count}
+    summing = {(int(first_sum[k]), int(first_sum[k]) + max(count, 1)) for k, count in counts.items() if summed}
+    places: dict[int, tuple[int, int]] = {}
+    for i, one in made.items():
+        wide = 0 if one.rows is None else one.rows.shape[1]
+        at = _gap(taken, wide, slices.shape[1]) if wide else -1
+        sum_at = _gap(summing, max(wide, 1), sums.shape[1]) if summed else 0
+        if at is None or sum_at is None:
+            return None
+        places[i] = at, sum_at
+        taken |= {(at, at + wide)} if wide else set()
+        summing |= {(sum_at, sum_at + max(wide, 1))} if summed else set()
+    everything = [made[i] if k is None else _unpacked(packed, k)[0] for i, k in enumerate(known)]
+    lying = [places[i] if k is None else (int(first[k]), int(first_sum[k])) for i, k in enumerate(known)]
+    for i, one in made.items():
+        if one.rows is not None:
+            slices[:, places[i][0] : places[i][0] + one.rows.shape[1]] = one.rows
+        if summed:
+            added = _sums(tables[i], one)
+            sums[:, places[i][1] : places[i][1] + added.shape[1]] = added
+    found, device = TableArrays(), packed.slices.device
+    found.bins, found.slices, found.sums = packed.bins, packed.slices, packed.sums
+    found.mirror = wp.array(np.stack([one.mirror for one in everything]), dtype=float, device=device)
+    found.cdf = wp.array(np.stack([one.cdf for one in everything]), dtype=float, device=device)
+    found.first = wp.array(np.array([at for at, _ in lying], np.int32), dtype=int, device=device)
+    found.first_sum = wp.array(np.array([at for _, at in lying], np.int32), dtype=int, device=device)
+    found.steps = wp.array(np.array([one.steps for one in everything], np.int32), dtype=int, device=device)
+    found.shift = wp.array(np.array([one.shift for one in everything], np.float32), dtype=float, device=device)
+    return found
+
+
+def _gap(taken: set[tuple[int, int]], wide: int, room: int) -> int | None:
+    """Where ``wide`` free places lie among ``room`` ones; None: nowhere."""
+    at = 0
+    for start, end in sorted(taken):
+        if start - at >= wide:
+            return at
+        at = max(at, end)
+    return at if room - at >= wide else None
+
+
 def _unpacked(packed: TableArrays, k: int) -> tuple[_Packed, np.ndarray]:
     """Table number ``k`` of device arrays, and its running sums."""
     first, steps, at = int(packed.first.numpy()[k]), int(packed.steps.numpy()[k]), int(packed.first_sum.numpy()[k])
-    count = 0 if first < 0 else steps + 1 if steps else 3
+    count = _count(first, steps)
     rows = packed.slices.numpy()[:, first : first + count] if count else None
     one = _Packed(packed.mirror.numpy()[k], packed.cdf.numpy()[k], rows, steps, float(packed.shift.numpy()[k]))
     return one, packed.sums.numpy()[:, at : at + max(count, 1)]

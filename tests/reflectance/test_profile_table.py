@@ -111,6 +111,30 @@ def test_tables_among_others_are_taken_over():
         np.testing.assert_array_equal(getattr(found, name).numpy(), getattr(fresh, name).numpy(), err_msg=name)
 
 
+@pytest.mark.parametrize("summed", [False, True])
+def test_tables_find_room_among_earlier_ones(summed):
+    """Tables come, go and change places; what each of them reads are the bits of all packed anew."""
+    models = ("table", "quadratic") if summed else ("table", "quadratic", "gamma")  # widest first
+    some = [simulated(model, fresnel) for model in models for fresnel in (None, IRON, GLASS)]
+    tables = some[:3]
+    packed = profile_table.pack(tables, summed=summed, roomy=True)
+    few = [some[3], some[1], some[0]]
+    for now in (some[:4], few, some[2:5], [some[4]], [some[4], some[5], some[0]], some, some[1:]):
+        last, packed = packed, profile_table.pack(now, earlier=(tables, packed), summed=summed, roomy=True)
+        assert now is some or packed.slices.ptr == last.slices.ptr  # some do not fit
+        tables = now
+        fresh = profile_table.pack(now, summed=summed)
+        for name in ("mirror", "cdf", "steps", "shift"):
+            np.testing.assert_array_equal(getattr(packed, name).numpy(), getattr(fresh, name).numpy(), err_msg=name)
+        for k, steps in enumerate(fresh.steps.numpy()):
+            assert (fresh.first.numpy()[k] < 0) == (packed.first.numpy()[k] < 0)
+            rows = 0 if fresh.first.numpy()[k] < 0 else steps + 1 if steps else 3
+            for name, at, wide in (("slices", "first", rows), ("sums", "first_sum", max(rows, 1) * summed)):
+                starts = [getattr(a, at).numpy()[k] for a in (packed, fresh)]
+                arrays = [getattr(a, name).numpy() for a in (packed, fresh)]
+                np.testing.assert_array_equal(*(a[:, s : s + wide] for a, s in zip(arrays, starts, strict=True)))
+
+
 @pytest.mark.parametrize("model", [None, "gamma", "quadratic", "table"])
 @pytest.mark.parametrize("summed", [False, True])
 def test_the_stated_memory_is_what_is_taken(model, summed):

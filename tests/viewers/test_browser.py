@@ -151,19 +151,24 @@ def test_layers_are_switched_and_reordered(server, page):
 
 def test_the_3d_view_lies_over_the_picture_while_the_camera_is_dragged(page):
     finished(page)
+    until(page, "() => document.getElementById('preview')?.hidden")
     box = page.locator("#picture").bounding_box()
     page.mouse.move(box["x"] + 100, box["y"] + 100)
     page.mouse.down()
-    for step in range(100):
-        page.mouse.move(box["x"] + 102 + 2 * step, box["y"] + 100)
-        if page.locator("#preview").is_visible():
+    first = page.get_attribute("#preview", "src")
+    for step in range(600):  # until the view from elsewhere is there
+        page.mouse.move(box["x"] + 102 + step % 80, box["y"] + 100)
+        time.sleep(0.02)
+        if page.locator("#preview").is_visible() and page.get_attribute("#preview", "src") != first:
             break
-        time.sleep(0.1)
-    assert page.locator("#preview").is_visible()
+    else:
+        raise AssertionError("the 3D view was not seen")
     assert page.evaluate("() => document.getElementById('preview').naturalWidth") == 64
+    # the drag rests: the picture, once it is there, is seen though the button is held
+    until(page, "() => document.getElementById('preview').hidden")
     page.mouse.up()
     finished(page)
-    until(page, "() => document.getElementById('preview').hidden")
+    assert page.locator("#preview").is_hidden()
 
 
 def test_camera_light_pixel_before_and_save(server, page, tmp_path_factory):

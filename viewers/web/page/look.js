@@ -4,12 +4,14 @@ import { ask, moving, sender, then } from "/asking.js";
 import { Panel } from "/panel.js";
 import { Pixel } from "/pixel.js";
 
+const STILL = 250; // milliseconds without a step after which a drag rests
+
 const Look = {
   name: "Look",
   components: { Panel, Pixel },
   inject: ["trame"],
   props: ["look", "before", "values", "controls", "about"],
-  data: () => ({ mode: "camera", split: 0, solid: true, dragging: false, drawn: "", picture: 0, mark: null, pixel: null, said: "", wrong: "", refused: 0 }),
+  data: () => ({ mode: "camera", split: 0, solid: true, dragging: false, moving: false, drawn: "", picture: 0, mark: null, pixel: null, said: "", wrong: "", refused: 0 }),
   template: `
 <div id="look" :data-ready="about ? 'yes' : null">
   <main>
@@ -32,7 +34,7 @@ const Look = {
     <div id="picture" ref="picture" :class="{ pick: mode === 'pick' }" :style="{ aspectRatio: look.size[0] + ' / ' + look.size[1] }"
       @pointerdown="down" @pointermove="move" @pointerup="up" @pointercancel="up" @wheel.prevent="wheel">
       <img v-if="look.picture" id="after" alt="the stage as it is now" draggable="false" :src="'/picture?v=' + look.picture" :data-picture="picture" @load="loaded">
-      <img v-if="drawn" id="preview" alt="the stage in 3D" draggable="false" :src="drawn" :hidden="picture && (!dragging || look.samples)">
+      <img v-if="drawn" id="preview" alt="the stage in 3D" draggable="false" :src="drawn" :hidden="picture && !(dragging && (moving || !look.samples))">
       <template v-if="split > 0 && before">
         <img id="before" alt="the stage as it was" draggable="false" :src="'/before?v=' + before" :style="{ clipPath: 'inset(0 ' + 100 * (1 - split) + '% 0 0)' }">
         <div id="line" :style="{ left: 100 * split + '%' }"></div>
@@ -82,7 +84,7 @@ const Look = {
       this.picture = Number(new URL(event.target.src).searchParams.get("v"));
       if (!this.last) this.dragging = false;
     },
-    // While the camera or a light is dragged the 3D view lies over the picture until that has a sample everywhere.
+    // While the camera or a light is dragged the 3D view lies over the picture, then until that has a sample everywhere.
     async draw() {
       if (this.drawing || !this.solid || !this.about.preview) return;
       this.drawing = true;
@@ -112,12 +114,15 @@ const Look = {
       this.last = at;
       if (this.mode === "pick" || (!dx && !dy)) return;
       const camera = this.mode === "camera", prim = camera ? "" : this.mode;
-      this.dragging = true;
+      this.dragging = this.moving = true;
+      clearTimeout(this.still);
+      this.still = setTimeout(() => { this.moving = false; }, STILL);
       this.mover(prim)(moving(event.shiftKey && camera ? { prim, across: dx, along: dy } : { prim, right: Math.PI * dx, up: Math.PI * (camera ? dy : -dy) }));
     },
     up(event) {
       if (this.last && this.moved < 4 && event.type === "pointerup") this.pick(this.share(event));
       this.last = null;
+      this.moving = false;
     },
     wheel(event) {
       const prim = this.mode === "camera" ? "" : this.mode;
