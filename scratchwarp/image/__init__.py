@@ -8,7 +8,7 @@ Files:
     png         a film as a picture to look at
     quick       the same for pictures that follow a slider, in memory
     normals     tangent-space normal maps
-    texture     an image file as a texture: linear Rec.709
+    texture     an image file as a texture: linear Rec.709; bounds: what it may claim
     writer      write(film, path) chooses by suffix
 """
 

@@ -8,6 +8,7 @@ import numpy as np
 import OpenImageIO as oiio
 
 from ..whole import whole
+from .bounds import check_size, legible, one_line
 from .layers import channels, gather
 
 # ITU-R BT.709 primaries and the D65 white point: red, green, blue, white as (x, y).
@@ -64,20 +65,27 @@ def put(spec: Any, pixels: np.ndarray, draft: Path, path: Path) -> None:
 
 
 def read(path: Path) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
-    """Layers and header of an EXR file: name -> float32 [h, w] or [h, w, n]; OSError when it cannot be read."""
+    """Layers and header of an EXR file: name -> float32 [h, w] or [h, w, n]; OSError when it cannot be read,
+    TooLarge (a ValueError) where it claims more than memory or its file can hold."""
     file = oiio.ImageInput.open(str(path))
     if file is None:
-        raise OSError(f"{path}: {oiio.geterror()}")
-    spec, pixels = file.spec(), file.read_image(oiio.FLOAT)
-    message = file.geterror()
-    file.close()
+        raise OSError(f"{path}: {one_line(oiio.geterror)}")
+    spec = file.spec()
+    try:
+        check_size(path, spec, None, spec.nchannels)
+        pixels = file.read_image(oiio.FLOAT)
+    finally:
+        message = one_line(file.geterror)
+        file.close()
     if pixels is None:
         raise OSError(f"{path}: {message}")
     layers = {}
-    for name, indices in gather(list(spec.channelnames)).items():
+    with legible(path):
+        names, header = list(spec.channelnames), {a.name: a.value for a in spec.extra_attribs}
+    for name, indices in gather(names).items():
         values = np.ascontiguousarray(pixels[..., indices], dtype=np.float32)
         layers[name] = values[..., 0] if len(indices) == 1 else values
-    return layers, {a.name: a.value for a in spec.extra_attribs}
+    return layers, header
 
 
 def _attribute(spec: Any, key: str, value: Any) -> None:

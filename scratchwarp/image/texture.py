@@ -7,16 +7,12 @@ import numpy as np
 import OpenImageIO as oiio
 
 from ..scene import Budget, TooLarge
+from .bounds import check_size, legible, one_line
 from .layers import HALF_MAX
 from .view import BUILTIN
 
 _UNTOUCHED = ("raw", "data", "identity", "unknown", "lin_rec709_scene", "lin_rec709")
 _SRGB = ("sRGB", "srgb_rec709_scene", "srgb_rec709")
-
-
-BOMB = 10_000
-"""An image that claims more than so many bytes for each byte of its file is none: no codec of ours packs so well."""
-SMALL = 64e6
 
 
 def read_texture(path: str | Path, color_space: str = "auto", budget: Budget | None = None) -> np.ndarray:
@@ -39,25 +35,27 @@ def read_texture(path: str | Path, color_space: str = "auto", budget: Budget | N
     hints.attribute("oiio:UnassociatedAlpha", 1)
     file = oiio.ImageInput.open(str(path), hints)
     if file is None:
-        raise OSError(f"{path}: cannot be read as an image ({oiio.geterror().strip() or 'unknown format'})")
+        raise OSError(f"{path}: cannot be read as an image ({one_line(oiio.geterror) or 'unknown format'})")
     spec = file.spec()
-    texels, channels = float(spec.width) * spec.height * max(spec.depth, 1), max(spec.nchannels, 1)
-    said, native = f"{spec.width} x {spec.height} pixels of {channels} channels", float(spec.image_bytes(True))
-    if native > SMALL and native > BOMB * path.stat().st_size:
+    try:
+        check_size(path, spec, budget)
+    except TooLarge:
         file.close()
-        raise TooLarge(f"{path}: claims {said} in {path.stat().st_size} bytes; it is damaged or a bomb")
-    (budget or Budget()).take(16.0 * texels, path, said, besides=4.0 * channels * texels)
+        raise
     pixels = file.read_image(oiio.FLOAT)
-    message = file.geterror()
+    message = one_line(file.geterror)
     file.close()
     if pixels is None:
         raise OSError(f"{path}: cannot be decoded ({message})")
-    rgba = _rgba(np.asarray(pixels, dtype=np.float32).reshape(spec.height, spec.width, -1), list(spec.channelnames))
+    with legible(path):
+        rgba = _rgba(np.asarray(pixels, dtype=np.float32).reshape(spec.height, spec.width, -1), list(spec.channelnames))
     if np.isnan(rgba).any():
         y, x, _ = (int(i) for i in np.argwhere(np.isnan(rgba))[0])
         raise ValueError(f"{path}: pixel ({x}, {y}) is NaN; repair the image")
     np.clip(rgba, -HALF_MAX if rgba.min() == -np.inf else None, HALF_MAX if rgba.max() == np.inf else None, out=rgba)
-    space = _automatic(spec) if color_space == "auto" else color_space
+    with legible(path):
+        automatic = _automatic(spec)
+    space = automatic if color_space == "auto" else color_space
     return rgba if space in _UNTOUCHED else _to_rec709(rgba, space, path)
 
 

@@ -12,6 +12,7 @@ from scratchwarp.scene import Budget, Camera, Scene, StageError
 
 from .camera import find_camera, framing_camera, read_camera
 from .complain import complain
+from .crate import check_arrays
 from .curves import CurveSets
 from .geometry import Geometry, read_geometry
 from .illuminate import read_lights
@@ -113,6 +114,8 @@ def opened(
         raise StageError(f"frame is {frame} and default_time is set; give one of them")
     unsampled = Usd.TimeCode.Default() if default_time else Usd.TimeCode.EarliestTime()
     stage = open_stage(path, session_layer, mask, [k for k in (camera, render_settings) if k])
+    allowed = budget or Budget()
+    check_arrays(stage, allowed)
     up_axis(path, stage)
     reading = Reading(
         stage=stage,
@@ -121,7 +124,7 @@ def opened(
         metres=metres_per_unit(path, stage),
         warn=warnings or Warnings(),
         load_texture=load_texture,
-        budget=budget or Budget(),
+        budget=allowed,
     )
     settings = read_settings(reading, render_settings)
     return replace(reading, purposes=_purposes(tuple(purposes), settings)), settings
