@@ -1,8 +1,9 @@
 """Facets of glass: how much goes through, and which way.
 
 A facet reflects F, lets through ``clear`` (1 - F) and leaves the rest to its diffuse lobe, F the exact reflectance of a
-dielectric, from either side (beyond the critical angle 1); from within the diffuse lobe is that of what lies behind. Rough facets refract at GGX micro-facets (Walter et al.
-2007). Radiance is not scaled by the square of the index: what goes in comes out again.
+dielectric, from either side (beyond the critical angle 1); from within the diffuse lobe is that of what lies behind.
+Rough facets refract at GGX micro-facets (Walter et al. 2007). Radiance is not scaled by the square of the index: what
+goes in comes out again.
 """
 
 import warp as wp

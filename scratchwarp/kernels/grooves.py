@@ -203,11 +203,11 @@ def _pattern(
         if laid is None:
             laid = lay_out(plan.layer, low, high, scale, hand, own_curves, MOST_PATHS - joined.laid - len(paths))
         paths += laid
-        drawn: dict[tuple[float, float], Array] = {}  # grooves of one size share a section
+        drawn: dict[tuple[float, float, float], Array] = {}  # grooves of one size and shape share a section
         for path in laid:
-            if (path.width, path.depth) not in drawn:
-                drawn[path.width, path.depth] = _section(plan, path)
-            sections.append(drawn[path.width, path.depth])
+            if (path.width, path.depth, path.part) not in drawn:
+                drawn[path.width, path.depth, path.part] = _section(plan, path)
+            sections.append(drawn[path.width, path.depth, path.part])
         own += [number] * len(laid)
         if joined.laid + len(paths) > MOST_PATHS:
             raise ValueError(

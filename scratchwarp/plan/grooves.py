@@ -65,7 +65,8 @@ class GroovePlan:
     def crossings(self) -> bool:
         """Whether some of its grooves may cross, bend or end: all but one set of parallel lines."""
         only = self.layers[0].layer
-        return len(self.layers) > 1 or only.distribution != "linear" or self.tapers
+        steps = only.profile_end is not None and only.profile_variation > 0.0 and only.variation_length > 0.0
+        return len(self.layers) > 1 or only.distribution != "linear" or self.tapers or steps
 
     @property
     def bounces(self) -> bool:

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..scene import Curves, Layer
 from .generate import random_scratches
-from .perturb import along_path
+from .perturb import along_path, profile_runs
 
 # A circle is drawn by chords that leave it by at most this part of a groove's width.
 CHORD = 0.02
@@ -116,8 +116,9 @@ def _stretched(points: Array, back: Array, width: float, depth: float) -> Path:
 
 
 def _perturbed(layer: Layer, paths: list[Path], size: Array) -> list[Path]:
-    """Paths whose widths, depths and profiles vary as the layer says: sizes along each of them where it has a
-    ``variation_length``; the profile from path to path."""
+    """Paths whose widths, depths and profiles vary as the layer says: along each of them where it has a
+    ``variation_length``, the profile in steps, at which one path ends and the next one begins; else from path to
+    path."""
     rng = np.random.default_rng([layer.seed & 0xFFFFFFFF, 7, *layer.name.encode()])
     unit = 1.0 if layer.space == "surface" else math.sqrt(abs(size[0] * size[1]))
     amount = layer.profile_variation if layer.profile_end is not None else 0.0
@@ -128,6 +129,13 @@ def _perturbed(layer: Layer, paths: list[Path], size: Array) -> list[Path]:
             if path.scales is not None:
                 scales = scales * _at(path, points)
             path = replace(path, points=points, scales=scales)
+        if amount > 0.0 and layer.variation_length > 0.0:
+            try:
+                runs = profile_runs(path.points, path.scales, layer.variation_length * unit, PARTS, rng)
+            except ValueError as error:
+                raise ValueError(f"{layer.label}: {error}; make variationLength longer") from None
+            made += [replace(path, points=p, scales=sizes, part=amount * part) for p, sizes, part in runs]
+            continue
         if amount > 0.0:  # a few steps, so that paths share their profiles
             path = replace(path, part=amount * round(rng.random() * PARTS) / PARTS)
         made.append(path)
