@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from ..kernels import kernel_key
 from ..plan import EffectPlan, make_plan
 from ..plan.knobs import KNOBS, acting, checked
 from ..profiles import Table
@@ -100,9 +101,14 @@ class _Study:
         checked({name: KNOBS[name].default if name in KNOBS else 0 for name in names})
         self.ladders = {n: tuple(KNOBS[n].checked(v) for v in given.get(n, self._values(n))) for n in names}
         self.settings: list[Setting] = [{}]
+        own, compiled = kernel_key(scene, plan), list[Setting]()
         for name, values in self.ladders.items():
-            others = [value for value in values if value != self.default(name)]
-            self.settings += [{name: value} for value in others if self._fits(name, value)]
+            for value in (value for value in values if value != self.default(name)):
+                made = self._planned({name: value})
+                if made is not None:
+                    alike = kernel_key(scene, made) == own
+                    (self.settings if alike else compiled).append({name: value})
+        self.settings += compiled  # last: compiling takes from the budget
         self.best = {n: KNOBS[n].reference for n in names if n not in ("spp", "lights.cones")}
         if "lights.cones" in known:
             self.best["lights.cones"] = "both"
@@ -131,11 +137,13 @@ class _Study:
 
     def _fits(self, name: str, value: Value) -> bool:
         """Whether a plan can be made with it."""
+        return self._planned({name: value}) is not None
+
+    def _planned(self, knobs: Setting) -> EffectPlan | None:
         try:
-            make_plan(self.scene, self._turned({name: value}, 0))
+            return make_plan(self.scene, self._turned(knobs, 0))
         except ValueError:
-            return False
-        return True
+            return None
 
     def _turned(self, knobs: Setting, seed: int) -> Settings:
         return replace(self.base, knobs={**self.base.knobs, **knobs}, seed=seed)

@@ -1,6 +1,8 @@
 """Error targets, predictions and prices on stages that nothing was calibrated with.
 
     python tests/benchmarks/accuracy.py [FOLDER] [--width 96] [--stages kettle wood painted vinyl] [--quick]
+    python tests/benchmarks/accuracy.py FOLDER --predicted     # predicted seconds alone, over processor seconds
+    python tests/benchmarks/accuracy.py --plots docs --stages gold spoon grooves_crossing --budget 60
 
 For each stage and each error from 0.1 to 0.003: the error reached against a reference of 4096 samples and the knobs'
 reference values, over what was asked for; what the chosen settings cost over the cheapest settings of a grid that meet
@@ -22,6 +24,7 @@ import scratchwarp as sw
 from scratchwarp.pipelines.author_demo import author
 from scratchwarp.plan.cost import forecast
 from scratchwarp.plan.knobs import KNOBS, acting
+from scratchwarp.study.calibration import measured
 from scratchwarp.study.chart import chart
 from scratchwarp.study.measures import rel_mse
 
@@ -30,6 +33,8 @@ ERRORS = (0.1, 0.03, 0.01, 0.003)
 GRID_SPP = (2, 4, 8, 16, 32, 64, 128, 256, 512)
 GRID_TABLES = ((16, 16), (32, 32), (64, 32), (64, 128), (128, 128), (256, 128))
 SEEDS = (1, 2)
+HELD = ("column", "grooved_sphere", "spoon_star", "vinyl", "zoom", "wood", "painted", "kettle")
+SIZES = ((64, 16), (128, 4), (64, 64))
 REFERENCE_SEED = 2_000_000_000
 
 
@@ -77,11 +82,29 @@ def measure(name: str, scene: Any, width: int, quick: bool) -> list[dict[str, An
     return rows
 
 
+def predictions(name: str, scene: Any) -> list[dict[str, Any]]:
+    """Predicted seconds of simulating and tracing over the processor seconds of it, at unlike footprints."""
+    rows = []
+    for width, spp in SIZES:
+        settings = sw.Settings(width=width, spp=spp, threads=1)
+        took = measured(name, scene, settings)
+        guess = forecast(scene, sw.make_plan(scene, settings))
+        simulated = sum(seconds for _, seconds in took.simulate)
+        row = {"stage": name, "width": width, "spp": spp, "trace": guess.part("trace") / took.trace, "took": took.trace}
+        row["simulate"] = guess.part("simulate") / simulated if simulated > 0.01 else None
+        row["predicted"] = (guess.part("simulate") + guess.part("trace")) / (simulated + took.trace)
+        rows.append(row)
+        said = "" if row["simulate"] is None else f", tables {row['simulate']:5.2f}"
+        print(f"{name:15s} {width:4d} wide, {spp:3d} samples: {took.trace:7.3f} s, predicted {row['predicted']:5.2f} "
+              f"of the time (tracing {row['trace']:5.2f}{said})", flush=True)  # fmt: skip
+    return rows
+
+
 def plots(folder: Path, stages: list[str], width: int, budget: float) -> None:
     """Error against seconds of every knob of the stages, ``budget`` seconds each."""
     with tempfile.TemporaryDirectory() as made:
         for file in map(Path, author(made, names=stages)):
-            report = sw.study.sweep(sw.read(file), settings=sw.Settings(width=width, spp=8), budget=budget)
+            report = sw.study.sweep(sw.read(file), settings=sw.Settings(width=width, spp=8), budget=budget, repeats=2)
             names = [name for name in report.about["defaults"] if len(report.knob_rows(name)) > 1]
             joint = [row for row in report.rows if len(row.knobs) > 1]
             drawn = chart({name: report.knob_rows(name) for name in names}, joint, report.pareto())
@@ -94,18 +117,29 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", nargs="?", default="accuracy")
     parser.add_argument("--width", type=int, default=96)
-    parser.add_argument("--stages", nargs="+", default=list(STAGES))
+    parser.add_argument("--stages", nargs="+")
+    parser.add_argument("--predicted", action="store_true", help="predicted seconds alone")
+    parser.add_argument("--budget", type=float, default=600.0, help="seconds a stage of --plots [600]")
     parser.add_argument("--plots", metavar="DIR", help="study the stages instead; DIR/accuracy_STAGE.svg, as in docs/")
     parser.add_argument("--quick", action="store_true", help="two errors, one seed, small grid")
     args = parser.parse_args()
     folder = Path(args.folder)
     folder.mkdir(parents=True, exist_ok=True)
     if args.plots:
-        plots(Path(args.plots), args.stages, args.width, 60.0 if args.quick else 600.0)
+        plots(Path(args.plots), args.stages or list(STAGES), args.width, 60.0 if args.quick else args.budget)
         return
-    rows = []
+    rows: list[dict[str, Any]] = []
+    if args.predicted:
+        with tempfile.TemporaryDirectory() as stages:
+            for file in map(Path, author(stages, names=args.stages or list(HELD))):
+                rows += predictions(file.stem, sw.read(file))
+        (folder / "predicted.json").write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
+        off = np.array([abs(np.log2(row["predicted"])) for row in rows])
+        print(f"{len(rows)} cases: predicted within a factor of 2 {np.mean(off <= 1):.0%} (wanted: all; median "
+              f"{2 ** np.median(off):.2f}, most {2 ** off.max():.2f})")  # fmt: skip
+        return
     with tempfile.TemporaryDirectory() as stages:
-        for file in map(Path, author(stages, names=args.stages)):
+        for file in map(Path, author(stages, names=args.stages or list(STAGES))):
             rows += measure(file.stem, sw.read(file), args.width, args.quick)
             (folder / "accuracy.json").write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
     reached = np.array([row["reached"] for row in rows])
