@@ -24,7 +24,8 @@ class Term:
 
     ``where``: file and function below scratchwarp/. ``kernel`` and ``column``: its probe. ``inputs`` [n, k].
     ``right(x)``: float64 rows to values; ``naive(x)``: rows in the device's arithmetic to values. ``tolerance``:
-    relative, and ``floor``: absolute, of the stable form. ``why``: what the naive form does.
+    relative, and ``floor``: absolute, of the stable form. ``why``: what the naive form does. ``more()``: what the
+    kernel takes after its rows.
     """
 
     where: str
@@ -37,6 +38,7 @@ class Term:
     floor: float = 0.0
     column: int = 0
     double: bool = False
+    more: Callable[[], Any] | None = None
 
     def rows(self) -> np.ndarray:
         """Inputs as the device gets them, six columns."""
@@ -50,7 +52,8 @@ class Term:
         rows = self.rows()
         dtype = wp.float64 if self.double else float
         out = wp.zeros((len(rows), 6), dtype=dtype, device="cpu")
-        wp.launch(self.kernel, len(rows), inputs=[wp.array(rows, dtype=dtype, device="cpu"), out], device="cpu")
+        given = [wp.array(rows, dtype=dtype, device="cpu"), out, *([self.more()] if self.more else [])]
+        wp.launch(self.kernel, len(rows), inputs=given, device="cpu")
         return out.numpy()[:, self.column].astype(float)
 
     def expected(self) -> np.ndarray:

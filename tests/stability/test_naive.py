@@ -6,14 +6,14 @@ import pytest
 
 import scratchwarp
 
-from .terms import TERMS
+from .test_terms import ALL
 
 PACKAGE = Path(scratchwarp.__file__).parent
 
 
-@pytest.mark.parametrize("name", TERMS)
+@pytest.mark.parametrize("name", ALL)
 def test_the_naive_form_misses_what_the_stable_one_meets(name):
-    term = TERMS[name]
+    term = ALL[name]
     values = term.naively()
     assert term.off(values).max() > 1.0, (values, term.expected())
     file, function = term.where.split(":")

@@ -6,11 +6,14 @@ Tolerances are those of float32 (2^-24 of each step of a term), float64 where th
 
 import pytest
 
+from .late_terms import LATE
 from .terms import TERMS
 
+ALL = {**TERMS, **LATE}
 
-@pytest.mark.parametrize("name", TERMS)
+
+@pytest.mark.parametrize("name", ALL)
 def test_stable(name):
-    term = TERMS[name]
+    term = ALL[name]
     values = term.run()
     assert term.off(values).max() <= 1.0, (values, term.expected())
