@@ -69,14 +69,20 @@ def explain(args: Command) -> int:
     scene = sw.read(args.stage, **arguments.reading(args))
     _warn(scene.warnings, set(), args.quiet)
     plan = sw.make_plan(scene, arguments.settings(args))
+    laid: dict[str, int] = {}
+    if "grooves" in plan.effects and plan.on("grooves"):
+        from .kernels.groove_memory import described, taken
+
+        laid = taken(scene, plan)
     cost = forecast(scene, plan) if args.cost else None
     if args.json:
         effects = {n: {"enabled": e.enabled, "reason": e.reason, "prims": e.prims} for n, e in plan.effects.items()}
         warnings = scene.warnings + plan.warnings
         row = {"stage": args.stage, "warnings": warnings, "effects": effects}
+        row |= {"grooves": laid} if laid else {}
         print(json.dumps(row | ({"cost": cost.record()} if cost else {}), default=_plain))
     else:
-        print(plan.explain() + (f"\n\n{cost.text()}" if cost else ""))
+        print(plan.explain() + (f"\n{described(laid, plan)}" if laid else "") + (f"\n\n{cost.text()}" if cost else ""))
     return 0
 
 

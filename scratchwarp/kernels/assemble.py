@@ -273,6 +273,6 @@ def assemble(
         lambda: grooves.pack(scene, plan, key, shape, device),
     )
     scratch_set.grooves = cut.arrays
-    numbers = {"groove_pieces": cut.count, "groove_bytes": cut.memory} if key.grooves else {}
+    numbers = dict(cut.numbers)
     inputs = (camera_data(scene, plan), shape.arrays, stuff.arrays, scratch_set, light_set)
     return Assembled(key, inputs, (shape, stuff, packed, sets, sparkle, responding, cut), packed.warnings, numbers)

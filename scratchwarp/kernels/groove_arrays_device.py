@@ -5,7 +5,7 @@ import warp as wp
 from ..optics.frames_device import Frame
 from ..reflectance.base_device import Base
 from ..reflectance.grooves.footprint_device import Footprint
-from ..reflectance.grooves.solid_device import GrooveSet, Piece, Taper
+from ..reflectance.grooves.solid_device import GroovePath, GrooveSet, Taper
 from ..scratches.grid_device import Grid
 
 wp.set_module_options({"enable_backward": False})
@@ -29,14 +29,17 @@ class GrooveRecord:
     top: wp.float64
     skin: wp.float64
     mixed: int
+    wide: wp.float64
+    first_path: int
+    path_count: int
     sets: int
-    start: int
     first_step: int
     origin: wp.vec2d
     cell: wp.float64
     columns: int
     rows: int
     first: int
+    halved: int
 
 
 @wp.struct
@@ -44,8 +47,8 @@ class GrooveArrays:
     """All patterns.
 
     Attributes:
-        of_face: pattern of each triangle, or -1. records: of patterns. pieces, vertices, tapers, steps, starts, items:
-            of all of them.
+        of_face: pattern of each triangle, or -1. records: of patterns. paths, points, vertices, tapers, steps, starts,
+            items: of all of them.
         own: of each path, what its facets are made of in ``bases``, or -1 for what the surface is made of.
         slices: lines over a footprint where grooves cross or end. bounces: facets met after the first one.
         near, far: widths of a footprint in widths of a groove below which grooves are laid out, above which not.
@@ -53,7 +56,8 @@ class GrooveArrays:
 
     of_face: wp.array(dtype=int)
     records: wp.array(dtype=GrooveRecord)
-    pieces: wp.array(dtype=Piece)
+    paths: wp.array(dtype=GroovePath)
+    points: wp.array(dtype=wp.vec2d)
     vertices: wp.array(dtype=wp.vec2d)
     tapers: wp.array(dtype=Taper)
     steps: wp.array(dtype=wp.vec3d)

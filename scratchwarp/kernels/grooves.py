@@ -1,6 +1,6 @@
 """Layers that are laid out groove by groove -> device arrays: one pattern and grid for each material and surface."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -12,8 +12,9 @@ from ..plan.knobs import value
 from ..plan.layers import conductor_index
 from ..reflectance.base_device import CONDUCTOR, DIELECTRIC, SCHLICK, Base
 from ..reflectance.grooves import Pattern
-from ..reflectance.grooves.solid_device import Piece, Taper
+from ..reflectance.grooves.solid_device import GroovePath, Taper
 from ..scene import Curves, Scene
+from ..scratches.grid import StripGrid
 from ..scratches.paths import Path, lay_out, repeated
 from ..scratches.project import all_in_uv
 from .geometry import PackedGeometry
@@ -29,11 +30,11 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True, eq=False)
 class PackedGrooves:
-    """Device arrays; ``count``: pieces of grooves; ``memory``: bytes of pieces, cross-sections and grids."""
+    """Device arrays; ``numbers``: what of them there is and what it takes, for ``Film.stats``: pieces and paths of
+    grooves (a set that repeats is one), cells of grids, bytes of paths, of cross-sections, of grids, and of all."""
 
     arrays: GrooveArrays
-    count: int = 0
-    memory: int = 0
+    numbers: dict[str, int] = field(default_factory=dict)
 
 
 def _base(own: Any) -> Base:
@@ -65,67 +66,80 @@ class _Joined:
     """Arrays of several patterns, one after the other."""
 
     def __init__(self) -> None:
-        self.tables: list[Array] = []
+        self.paths: list[Array] = []
+        self.points: list[Array] = []
         self.vertices: list[Array] = []
         self.starts: list[Array] = []
         self.items: list[Array] = []
         self.own: list[Array] = []
+        self.tapers: list[Array] = []
         self.records: list[Any] = []
-        self.tapers: list[Any] = []
         self.steps: list[list[float]] = []
-        self.count = self.corners = self.cells = self.listed = self.laid = 0
+        self.count = self.cells = self.grid = self.laid = 0
 
-    def add(self, pattern: Pattern, own: Array, scale: Array, width: float, plan: GroovePlan) -> int:
+    def add(self, pattern: Pattern, grid: StripGrid, own: Array, scale: Array, width: float, plan: GroovePlan) -> int:
         """Number of a pattern; ``own``: the material of each of its paths."""
-        table = pattern.table.copy()
-        self.own.append(own.astype(np.int32))
-        table["path"] += self.laid
-        table["taper"] += np.where(table["taper"] >= 0, len(self.tapers), 0)
-        self.tapers += pattern.grooves.tapers.numpy().tolist()
-        table["first"] += self.corners
-        table["partner"] += np.where(table["partner"] >= 0, self.count, 0)
-        vertices = pattern.grooves.vertices.numpy()
-        grid = pattern.grid
-        starts, items = grid.data.starts.numpy(), grid.data.items.numpy()
+        paths, given = pattern.stored.copy(), pattern.grooves
         r: Any = GrooveRecord()
         r.scale, r.width = wp.vec2d(*scale), wp.float64(width)
-        for name in ("bottom", "top", "skin", "mixed", "sets"):
-            setattr(r, name, getattr(pattern.grooves, name))
-        for name in ("origin", "cell", "columns", "rows"):
+        for name in ("bottom", "top", "skin", "mixed", "wide", "path_count", "sets"):
+            setattr(r, name, getattr(given, name))
+        for name in ("origin", "cell", "columns", "rows", "halved"):
             setattr(r, name, getattr(grid.data, name))
-        r.start, r.first_step = self.count, len(self.steps)
-        self.steps += pattern.repeats.tolist()
-        r.first, r.handover = self.cells, int(plan.handover) + int(plan.waved)
+        r.first_path, r.first_step, r.first = _total(self.paths), len(self.steps), _total(self.starts)
+        r.handover = int(plan.handover) + int(plan.waved)
         r.smooth, r.most = plan.smooth, wp.float64(pattern.widest(HELD))
-        self.tables.append(table)
-        self.vertices.append(vertices)
-        self.starts.append(starts + self.listed)
-        self.items.append(items[: grid.listed] + self.count)
+        paths["number"] += self.laid
+        paths["taper"] += np.where(paths["taper"] >= 0, _total(self.tapers), 0)
+        paths["section"] += _total(self.vertices)
+        paths["point"] += _total(self.points)
+        self.steps += pattern.repeats.tolist()
+        # entries are counted in halves of an item where they are short
+        self.starts.append(grid.data.starts.numpy() + _total(self.items) * (2 if grid.data.halved else 1))
+        self.items.append(grid.data.items.numpy())
+        self.paths.append(paths)
+        self.points.append(given.points.numpy().reshape(-1, 2))
+        self.vertices.append(given.vertices.numpy().reshape(-1, 2))
+        self.tapers.append(given.tapers.numpy())
+        self.own.append(own.astype(np.int32))
         self.records.append(r)
-        self.count += len(table)
-        self.corners += len(vertices)
-        self.cells += len(starts)
-        self.listed += grid.listed
+        self.count += len(pattern.table) + len(pattern.sets)
+        self.cells += grid.shape[0] * grid.shape[1]
+        self.grid += grid.memory
         self.laid += pattern.count
         return len(self.records) - 1
 
-    def pack(self, arrays: Any, device: str) -> int:
-        """Write everything to the device; bytes of it."""
-        table, vertices = np.concatenate(self.tables), np.concatenate(self.vertices)
+    def pack(self, arrays: Any, device: str) -> dict[str, int]:
+        """Write everything to the device; what it takes."""
+        paths, points, vertices = (np.concatenate(x) for x in (self.paths, self.points, self.vertices))
         starts, items = np.concatenate(self.starts).astype(np.int32), np.concatenate(self.items).astype(np.int32)
-        own = np.concatenate(self.own)
-        arrays.pieces = wp.array(table, dtype=Piece, device=device)
+        own, tapers = np.concatenate(self.own), np.concatenate(self.tapers)
+        steps = np.array(self.steps).reshape(-1, 3)
+        arrays.paths = wp.array(paths, dtype=GroovePath, device=device)
+        arrays.points = wp.array(points, dtype=wp.vec2d, device=device)
         arrays.vertices = wp.array(vertices, dtype=wp.vec2d, device=device)
-        record: Any = Taper
-        tapers = np.array(self.tapers, dtype=record.numpy_dtype()) if self.tapers else np.zeros(0, record.numpy_dtype())
         arrays.tapers = wp.array(tapers, dtype=Taper, device=device)
-        arrays.steps = wp.array(np.array(self.steps).reshape(-1, 3), dtype=wp.vec3d, device=device)
+        arrays.steps = wp.array(steps, dtype=wp.vec3d, device=device)
         arrays.starts = wp.array(starts, dtype=int, device=device)
         arrays.items = wp.array(items, dtype=int, device=device)
         arrays.own = wp.array(own, dtype=int, device=device)
         arrays.records = wp.array(self.records, dtype=GrooveRecord, device=device)
-        small = own.nbytes + tapers.nbytes + 24 * len(self.steps)
-        return int(table.nbytes + vertices.nbytes + starts.nbytes + items.nbytes + small)
+        described: Any = GrooveRecord
+        records = np.dtype(described.numpy_dtype()).itemsize * len(self.records)
+        laid = (paths, points, tapers, steps, own)
+        parts = {
+            "groove_pieces": self.count,
+            "groove_paths": len(paths),
+            "groove_cells": self.cells,
+            "groove_path_bytes": sum(x.nbytes for x in laid) + records,
+            "groove_section_bytes": vertices.nbytes,
+            "groove_grid_bytes": starts.nbytes + items.nbytes,
+        }
+        return {**parts, "groove_bytes": sum(n for name, n in parts.items() if name.endswith("bytes"))}
+
+
+def _total(arrays: list[Array]) -> int:
+    return sum(len(x) for x in arrays)
 
 
 def _handed(shape: PackedGeometry) -> Array:
@@ -149,6 +163,8 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
     scales, handed = g.pattern_scale.numpy(), _handed(shape)
     of_face = np.full(len(material), -1, np.int32)
     joined = _Joined()
+    knobs = plan.settings.knobs
+    rule = str(value(knobs, "grooves.cells"))
     known: dict[tuple[float, ...], int] = {}
     bases: list[Any] = []
     for m, groove in enumerate(plan.grooves):
@@ -170,44 +186,49 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
                     asked = (*asked, float(i))  # they lie where this surface is
                 if asked not in known:
                     sets = [all_in_uv(own, shape.mesh, uv, faces, scales[i]) for own in sets]
-                    known[asked] = _pattern(groove, numbers, (low, high, scales[i], hand), sets, joined)
+                    known[asked] = _pattern(groove, numbers, (low, high, scales[i], hand), sets, rule, joined)
                 of_face[faces] = known[asked]
     arrays.of_face = wp.array(of_face, dtype=int, device=device)
-    memory = joined.pack(arrays, device) if joined.records else 0
+    taken = joined.pack(arrays, device) if joined.records else {}
     arrays.bases = wp.array(bases or [Base()], dtype=Base, device=device)
-    knobs = plan.settings.knobs
     lines = int(value(knobs, "grooves.lines"))
     arrays.slices = max(min(4, lines), -(-lines // (plan.settings.spp or 1)))
     arrays.bounces, arrays.near, arrays.far = int(value(knobs, "grooves.bounces")), NEAR, FAR
-    return PackedGrooves(arrays, joined.count, memory)
+    return PackedGrooves(arrays, taken)
 
 
 def _pattern(
     groove: GroovePlan, numbers: list[int], box: tuple[Array, Array, Array, float], curves: list[list[Curves]],
-    joined: _Joined,
+    rule: str, joined: _Joined,
 ) -> int:  # fmt: skip
     """Number of the pattern of a material over a part of a surface, -1 where it has no groove.
 
-    ``box``: uv from and to, micrometres a unit of u and of v, -1 for a mirrored mapping.
+    ``box``: uv from and to, micrometres a unit of u and of v, -1 for a mirrored mapping; ``rule``: for cells.
     """
     low, high, scale, hand = box
     paths: list[Path] = []
     sections: list[Array] = []
     own: list[int] = []
-    regular = [repeated(plan.layer, low, high, scale, hand) for plan in groove.layers]
-    steps = None
-    if all(sets is not None for sets in regular):
-        steps = [(*step, count) for sets in regular for _, step, count in sets or ()]
-    for plan, number, own_curves, sets in zip(groove.layers, numbers, curves, regular, strict=True):
-        laid = [path for path, _, _ in sets] if steps is not None and sets is not None else None
-        if laid is None:
+    steps: list[tuple[float, ...]] = []
+    rings: list[tuple[float, int] | None] = []
+    for plan, number, own_curves in zip(groove.layers, numbers, curves, strict=True):
+        regular = repeated(plan.layer, low, high, scale, hand)
+        if regular is not None:
+            laid = [path for path, _, _ in regular]
+            steps += [(*step, count) for _, step, count in regular if len(step) == 2]
+            steps += [(0.0, 0.0, 1.0) for _, step, _ in regular if len(step) == 1]
+            rings += [(float(step[0]), count) if len(step) == 1 else None for _, step, count in regular]
+        else:
             laid = lay_out(plan.layer, low, high, scale, hand, own_curves, MOST_PATHS - joined.laid - len(paths))
+            steps += [(0.0, 0.0, 1.0)] * len(laid)
+            rings += [None] * len(laid)
         paths += laid
         drawn: dict[tuple[float, float, float], Array] = {}  # grooves of one size and shape share a section
         for path in laid:
-            if (path.width, path.depth, path.part) not in drawn:
-                drawn[path.width, path.depth, path.part] = _section(plan, path)
-            sections.append(drawn[path.width, path.depth, path.part])
+            size = path.width, path.depth, path.part
+            if size not in drawn:
+                drawn[size] = _section(plan, path)
+            sections.append(drawn[size])
         own += [number] * len(laid)
         if joined.laid + len(paths) > MOST_PATHS:
             raise ValueError(
@@ -217,8 +238,9 @@ def _pattern(
     ends = [dict(plan.layer.extra).get("ends", "cap") for plan in groove.layers]
     scales = [path.scales for path in paths]
     shape = "mitre" if "mitre" in ends else "cap"
-    pattern = Pattern([path.points for path in paths], sections, shape, scales, steps)
-    if not len(pattern.table):
+    pattern = Pattern([path.points for path in paths], sections, shape, scales, steps, rings)
+    if not pattern.size:
         return -1
     width = float(np.mean([path.width for path in paths]))
-    return joined.add(pattern, np.array(own), scale * np.array([1.0, hand]), width, groove)
+    grid = pattern.grid_by(rule)
+    return joined.add(pattern, grid, np.array(own), scale * np.array([1.0, hand]), width, groove)

@@ -16,7 +16,8 @@ from ..reflectance.base_device import DIELECTRIC, BaseSample, base_eval_pdf, bas
 from ..reflectance.grooves.cast_device import path_of
 from ..reflectance.grooves.follow_device import follow
 from ..reflectance.grooves.footprint_device import slope_of
-from ..reflectance.grooves.near_device import find_near
+from ..reflectance.grooves.near_device import anything_near, as_array
+from ..reflectance.grooves.solid_device import Piece
 from .bounce_device import Scatter
 from .geometry_device import Geometry, Surface, uv_motion
 from .groove_arrays_device import GROOVE_ROOM, FacetStuff, GrooveArrays, GrooveSpot
@@ -85,14 +86,17 @@ def make_grooves(key: KernelKey, transmittance):
         if number >= 0:
             record = arrays.records[number]
             spot.smooth = record.smooth
-            spot.grooves.pieces = arrays.pieces
+            spot.grooves.paths = arrays.paths
+            spot.grooves.points = arrays.points
             spot.grooves.vertices = arrays.vertices
             spot.grooves.bottom = record.bottom
             spot.grooves.top = record.top
             spot.grooves.skin = record.skin
             spot.grooves.mixed = record.mixed
+            spot.grooves.wide = record.wide
             spot.grooves.sets = record.sets
-            spot.grooves.start = record.start
+            spot.grooves.first_path = record.first_path
+            spot.grooves.path_count = record.path_count
             spot.grooves.first_step = record.first_step
             spot.grooves.tapers = arrays.tapers
             spot.grooves.steps = arrays.steps
@@ -101,6 +105,7 @@ def make_grooves(key: KernelKey, transmittance):
             spot.grid.columns = record.columns
             spot.grid.rows = record.rows
             spot.grid.first = record.first
+            spot.grid.halved = record.halved
             spot.grid.starts = arrays.starts
             spot.grid.items = arrays.items
             sx = record.scale[0]
@@ -137,11 +142,12 @@ def make_grooves(key: KernelKey, transmittance):
                 spot.footprint.a1 = part * spot.footprint.a1
                 spot.footprint.a2 = part * spot.footprint.a2
             if spot.o[2] > GRAZING:
-                ids = wp.zeros(shape=GROOVE_ROOM, dtype=int)
                 none = wp.vec2d(wp.float64(0.0), wp.float64(0.0))
-                found = find_near(spot.grooves, spot.grid, spot.footprint, slope_of(spot.o), none, ids, GROOVE_ROOM)
                 # what stands out of the plane casts shadows on bare ground, too
-                if found > 0 or spot.grooves.top > wp.float64(0.0):
+                found = bool(spot.grooves.top > wp.float64(0.0))
+                if not found:
+                    found = anything_near(spot.grooves, spot.grid, spot.footprint, slope_of(spot.o), none)
+                if found:
                     spot.near = resolved
         if wp.static(key.groove_glass):
             if glass == 1:
@@ -194,6 +200,8 @@ def make_grooves(key: KernelKey, transmittance):
         """
         result = GrooveLight()
         out = Scatter()
+        room = wp.zeros(shape=GROOVE_ROOM, dtype=Piece)
+        spot.grooves.pieces = as_array(room)
         stuff = FacetStuff()
         stuff.base = lobe.base
         stuff.w_diffuse = lobe.w_diffuse

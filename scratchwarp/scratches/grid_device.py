@@ -17,7 +17,8 @@ class Strip:
 @wp.struct
 class Grid:
     """Cells of edge ``cell`` from ``origin``; those of cell (i, j) are ``items[starts[k]]`` on, k = first + j columns
-    + i. ``first``: where its cells begin in ``starts``; several grids can share the arrays.
+    + i. ``first``: where its cells begin in ``starts``; several grids can share the arrays. ``halved`` 1: two strips to
+    an item, 16 bits each, and ``starts`` counts strips.
     """
 
     origin: wp.vec2d
@@ -25,6 +26,7 @@ class Grid:
     columns: int
     rows: int
     first: int
+    halved: int
     starts: wp.array(dtype=int)
     items: wp.array(dtype=int)
 
@@ -34,6 +36,17 @@ def cell_at(grid: Grid, axis: int, x: wp.float64) -> int:
     """Column (axis 0) or row (axis 1) of a coordinate, clamped to one before the first and one past the last."""
     last = wp.where(axis == 0, grid.columns, grid.rows)
     return int(wp.clamp(wp.floor((x - grid.origin[axis]) / grid.cell), wp.float64(-1.0), wp.float64(last)))
+
+
+@wp.func
+def item_at(grid: Grid, e: int) -> int:
+    """Strip number ``e`` of those listed."""
+    k = int(0)
+    if grid.halved == 1:
+        k = (grid.items[e >> 1] >> (16 * (e & 1))) & 0xFFFF
+    else:
+        k = grid.items[e]
+    return k
 
 
 @wp.func

@@ -13,6 +13,9 @@ from .perturb import along_path, profile_runs
 
 # A circle is drawn by chords that leave it by at most this part of a groove's width.
 CHORD = 0.02
+FEWEST = 8  # chords of a ring; other numbers are this one doubled
+# Neighbours that begin at the same angle, so that their chords run in parallel; how many chords further the next begin.
+RINGS_ALIKE, PHASES = 8, 0.6180339887498949
 # More grooves, or corners of rings and spirals, than anything could draw.
 MOST_LINES, MOST_CORNERS = 400_000, 20_000_000
 PARTS = 8  # steps of the way from a profile to the other one
@@ -35,17 +38,29 @@ class Path:
 def repeated(
     layer: Layer, low: Array, high: Array, scale: Array, handed: float = 1.0
 ) -> list[tuple[Path, Array, int]] | None:
-    """Regular lines as ``lay_out`` has them: the first of each set, how far [um] the next one is, how many there are.
+    """Regular lines and rings as ``lay_out`` has them: the first of each set, how far [um] the next one is ([2], of
+    rings [1]), how many there are. A set of rings is (their centre, a point of the smallest one).
 
-    None for other layers and where lines differ.
+    None for other layers, where lines differ, and where circles are stretched.
     """
     alike = layer.width_variation == layer.depth_variation == layer.variation_length == layer.profile_variation == 0.0
-    if layer.distribution not in ("linear", "crosshatch") or not alike or layer.width <= 0.0 or layer.pitch <= 0.0:
+    known = layer.distribution in ("linear", "crosshatch", "concentric")
+    if not known or not alike or layer.width <= 0.0 or layer.pitch <= 0.0:
         return None
     size = np.asarray(scale, float) * (1.0, handed)
     plane = size if layer.space == "surface" else np.array([1.0, handed])
     corners = np.array([[u, v] for u in (low[0], high[0]) for v in (low[1], high[1])]) * plane
     back, made = np.abs(size / plane), []
+    if layer.distribution == "concentric":
+        if abs(back[0] - back[1]) > 1e-9 * back[0]:
+            return None
+        center, shift = np.array(layer.center) * plane, layer.offset[1] * layer.pitch
+        radii = _ring_radii(layer, corners, center, shift)
+        if not len(radii):
+            return []
+        points = np.array([center, center + (radii[0], 0.0)])
+        path = Path(points * back, layer.width * back[0], layer.depth * back[0])
+        return [(path, layer.pitch * back[:1], len(radii))]
     for number, angle in enumerate(_angles(layer)):
         first, last, at = _range(layer, corners, angle, layer.offset[1 - number % 2] * layer.pitch)
         across = np.array([-math.sin(angle), math.cos(angle)])
@@ -203,6 +218,15 @@ def _lines(layer: Layer, corners: Array, angle: float, shift: float) -> list[Arr
     return [line(i) for i in range(first, last + 1)]
 
 
+def chords(radii: Array, width: float) -> Array:
+    """How many chords rings of ``radii`` are drawn by whose grooves are ``width`` wide: ``FEWEST``, doubled."""
+    least = math.pi / np.sqrt(2.0 * np.minimum(CHORD * width / radii, 0.25))
+    n = np.full(np.shape(radii), FEWEST)
+    while (n < least).any():
+        n = np.where(n < least, 2 * n, n)
+    return n
+
+
 def _radii(corners: Array, center: Array, layer: Layer) -> tuple[float, float]:
     low, high = corners.min(0), corners.max(0)
     nearest = float(np.linalg.norm(np.maximum(np.maximum(low - center, center - high), 0.0)))
@@ -224,17 +248,23 @@ def _runs(points: Array, corners: Array, margin: float) -> list[Array]:
     return [points[i : j + 1] for i, j in zip(edges[::2], edges[1::2], strict=True)]
 
 
+def _ring_radii(layer: Layer, corners: Array, center: Array, shift: float) -> Array:
+    """Radii of the rings that a rectangle has a part in."""
+    nearest, farthest = _radii(corners, center, layer)
+    first = math.floor((max(nearest, 0.0) + shift) / layer.pitch)
+    radii = np.arange(first, math.ceil((farthest + shift) / layer.pitch)) * layer.pitch + 0.5 * layer.width - shift
+    return radii[radii > 0.5 * layer.width]
+
+
 def _circles(layer: Layer, corners: Array, center: Array, shift: float) -> list[Array]:
     made: list[Array] = []
     nearest, farthest = _radii(corners, center, layer)
     _bounded(layer, _ring_corners(layer, nearest, farthest), MOST_CORNERS, "corners of rings")
-    for i in range(math.floor((max(nearest, 0.0) + shift) / layer.pitch), math.ceil((farthest + shift) / layer.pitch)):
-        r = i * layer.pitch + 0.5 * layer.width - shift
-        if r > 0.5 * layer.width:
-            n = max(math.ceil(math.pi / math.sqrt(2.0 * min(CHORD * layer.width / r, 0.25))), 8)
-            turn = 2.0 * math.pi * np.arange(n) / n
-            ring = center + r * np.stack([np.cos(turn), np.sin(turn)], 1)
-            made += _runs(np.concatenate([ring, ring[:1]]), corners, 2.0 * layer.pitch)
+    for i, r in enumerate(_ring_radii(layer, corners, center, shift).tolist()):
+        n = int(chords(np.array(r), layer.width))
+        turn = 2.0 * math.pi * (np.arange(n) + i // RINGS_ALIKE * PHASES % 1.0) / n
+        ring = center + r * np.stack([np.cos(turn), np.sin(turn)], 1)
+        made += _runs(np.concatenate([ring, ring[:1]]), corners, 2.0 * layer.pitch)
     return made
 
 

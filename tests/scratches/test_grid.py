@@ -18,7 +18,7 @@ def test_every_point_finds_its_strips(cell):
     """A cell lists exactly the strips that touch it: all points of each strip lie in cells that list it."""
     table = strips(40)
     made = grid.build(table, cell=cell)
-    starts, items = made.data.starts.numpy(), made.data.items.numpy()
+    starts, items = made.data.starts.numpy(), made.entries()
     rng = np.random.default_rng(2)
     held = set()
     for k, strip in enumerate(table):

@@ -13,18 +13,20 @@ plane z = 0 and z up:
 - ``footprint_device``: ``make_footprint_mean(Material, radiance)`` gives ``mean(grooves, ids, count, footprint, o, i,
   material, slices, chord)``; ``touches`` finds the pieces that a footprint needs, ``passes_through`` those that do not
   end there.
-- ``near_device``: ``find_near`` gathers those from the grid of ``scratches.grid`` (``Pattern(...).grid``).
+- ``stored_device``: pieces made from what is stored, a record a path and a point a corner; lines and rings that repeat.
+- ``near_device``: ``find_near`` makes those that a footprint needs in ``GrooveSet.pieces``, room that the kernel gives
+  (``with_room``), by the grid of ``scratches.grid`` (``Pattern(...).grid``).
 - ``facet_device``: ``FacetMaterials`` (one a path) and ``facet_radiance``, what the NumPy entry point puts into it.
 - ``scatter_device``, ``walk_device``: ``make_walk(Material, scatter, radiance)`` follows a path from facet to facet,
   with refraction, and says where and whither it leaves.
 - ``masking_device``: ``seen_fraction`` of one cross-section, alone or periodic.
 
 Contracts. ``ids[0 .. count - 1]`` are the pieces that matter, each once, in any order: at least those ``touches`` says
-yes to (more cost time, not truth); count 0 is flat ground. A kernel may keep them in ``wp.zeros(shape=64, dtype=int)``.
-Directions are unit and point away from the surface; ``o`` or ``i`` below the plane gives 0. ``mean`` returns radiance
-for unit perpendicular irradiance (cosine of each facet inside) and the share of the footprint in which a surface was
-found, 1 but for rounding. Its cost grows with edges times pieces times lines; one line where all grooves are parallel
-and none ends nearby.
+yes to (more cost time, not truth); count 0 is flat ground. A kernel may keep them in ``wp.zeros(shape=64, dtype=int)``,
+and the pieces in another one of ``Piece``. Directions are unit and point away from the surface; ``o`` or ``i`` below
+the plane gives 0. ``mean`` returns radiance for unit perpendicular irradiance (cosine of each facet inside) and the
+share of the footprint in which a surface was found, 1 but for rounding. Its cost grows with edges times pieces times
+lines; one line where all grooves are parallel and none ends nearby.
 """
 
 from ...lazy import lazily

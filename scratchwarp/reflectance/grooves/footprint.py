@@ -9,11 +9,11 @@ from numpy.typing import ArrayLike
 from ..vectors import directions, to_device, vectors
 from . import footprint_kernels as kernels
 from .facet import facet_materials
+from .footprint_device import Footprint
 from .pattern import Pattern
 from .walks import follow
 
 CHORDS = ("axis", "exact")
-ROOM = 64  # grooves near a footprint, before a larger list is made for it
 
 
 def means(
@@ -42,16 +42,20 @@ def means(
     total = len(inputs[0])
     out = wp.zeros(total, dtype=wp.vec3d, device="cpu")
     found = wp.zeros(total, dtype=wp.float64, device="cpu")
-    near = wp.zeros((total, min(max(g.size, 1), ROOM)), dtype=int, device="cpu")
-    given = [g.grooves, materials, slices, CHORDS.index(chord), g.grid.data]
-    wp.launch(kernels.means, total, inputs=[*given, near, *inputs], outputs=[out, found], device="cpu")
+    given = [materials, slices, CHORDS.index(chord), g.grid.data]
+    wp.launch(kernels.means, total, inputs=[g.grooves, *given, *inputs], outputs=[out, found], device="cpu")
     result, share = out.numpy(), found.numpy()
-    for k in np.flatnonzero(share < 0.0):  # more grooves than there was room for
-        near = wp.zeros((1, g.size), dtype=int, device="cpu")
-        one, one_share = wp.zeros(1, dtype=wp.vec3d, device="cpu"), wp.zeros(1, dtype=wp.float64, device="cpu")
-        rows = [x[int(k) : int(k) + 1] for x in inputs]
-        wp.launch(kernels.means, 1, inputs=[*given, near, *rows], outputs=[one, one_share], device="cpu")
-        result[k], share[k] = one.numpy()[0], one_share.numpy()[0]
+    crowded = np.flatnonzero(share < 0.0)  # more grooves than there was room for
+    if len(crowded):
+        room, ids = g.room(g.size + 4), wp.zeros(g.size + 4, dtype=int, device="cpu")
+        rows = [x.numpy() for x in inputs]
+        for k in crowded:
+            one, one_share = wp.zeros(1, dtype=wp.vec3d, device="cpu"), wp.zeros(1, dtype=wp.float64, device="cpu")
+            f: Any = Footprint()
+            f.center, f.a1, f.a2 = (wp.vec2d(*x[k]) for x in rows[:3])
+            where = [f, *(wp.vec3d(*x[k]) for x in rows[3:])]
+            wp.launch(kernels.mean_wide, 1, inputs=[room, *given, ids, *where], outputs=[one, one_share], device="cpu")
+            result[k], share[k] = one.numpy()[0], one_share.numpy()[0]
     return result.reshape(*lead, 3), share.reshape(lead)
 
 

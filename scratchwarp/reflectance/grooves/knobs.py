@@ -17,6 +17,15 @@ KNOBS = (
         switches={"axis": {"grooves.crossings": False}, "ellipse": {}},
     ),
     Knob(
+        name="grooves.cells",
+        values=("width", "balanced"),
+        default="balanced",
+        error="none: cells as wide as a groove take more memory, larger ones hold more grooves to try",
+        sets="groove.cells",
+        effects=("grooves",),
+        source="Bosch, Pueyo, Merillou, Ghazanfarpour 2008, section 4.1",
+    ),
+    Knob(
         name="grooves.lines",
         values=(4, 12, 24, 48, 96, 192),
         default=LINES,

@@ -10,13 +10,20 @@ import warp as wp
 from numpy.typing import ArrayLike
 
 from ...scratches.grid import StripGrid, box, build, strip_table
+from ...scratches.paths import chords
 from ..vectors import numbers
 from .section import closed_section, height_at, run_boxes, section_points
-from .solid_device import GrooveSet, Piece, Taper
+from .solid_device import GroovePath, GrooveSet, Piece, Taper
+from .stored import make_pieces
+from .stored_device import CAPPED, DIGS_AND_PILES, LOOP, RINGS, STARTS, STOPS
 from .tapers import Row, joined, simplified, tangents, taper_of, turn_is_straight
 
 ENDS = ("cap", "mitre")
 
+_FIELDS = (
+    "paths", "points", "vertices", "bottom", "top", "skin", "mixed", "wide", "first_path", "path_count", "sets",
+    "first_step", "steps", "tapers",
+)  # fmt: skip
 _SKIN = 1e-9  # of the largest length of a profile: how far off a surface its two sides are looked at
 
 
@@ -49,15 +56,18 @@ class Pattern:
             they change linearly.
         repeats: for each path (x, y, n): it is there n times, each moved by (x, y) from the one before. Paths are then
             straight, take no memory for their copies and need no grid, and what they do beyond their ends is not
-            looked for: they should reach beyond all footprints.
+            looked for: they should reach beyond all footprints. n of 1: an ordinary path.
+        rings: for each path None or (distance, n): it is n rings that far from one another, about its first point, the
+            smallest through its second; they too take no memory and need no grid. Chords of ``scratches.paths.chords``.
 
     Corners are mitred. Where grooves cross, the lower height counts where both dig in, the higher where both stand out,
     and what one digs cuts what another piles up. Paths that go straight on from another's end, with the same section,
     are one path. Raises ValueError naming the argument.
 
     Attributes:
-        count: how many paths were given. grooves: what the device takes (``solid_device.GrooveSet``); table: its pieces
-            as a NumPy table; size: how many pieces there are, repeats counted; memory: bytes of pieces and profiles.
+        count: how many paths were given. grooves: what the device takes (``solid_device.GrooveSet``); stored: its paths
+            as a NumPy table; table: pieces that do not repeat, as another; size: how many pieces there are, repeats
+            counted; memory: bytes of paths, points and profiles.
         grid: where the pieces lie (``scratches.grid.StripGrid``, with bytes of its own).
     """
 
@@ -68,6 +78,7 @@ class Pattern:
         ends: str = "cap",
         scales: Sequence[ArrayLike | None] | None = None,
         repeats: ArrayLike | None = None,
+        rings: Sequence[tuple[float, int] | None] | None = None,
     ) -> None:
         if ends not in ENDS:
             raise ValueError(f"ends must be one of {', '.join(ENDS)}, got {ends!r}")
@@ -77,19 +88,21 @@ class Pattern:
                 raise ValueError(f"paths[{i}] must have shape [k, 2], got {list(p.shape)}")
         sections = self._sections(profiles, len(given))
         sizes = self._scales(scales, given)
+        steps = np.tile((0.0, 0.0, 1.0), (len(given), 1)) if repeats is None else numbers("repeats", repeats)
+        around = list(rings) if rings is not None else [None] * len(given)
+        if steps.shape != (len(given), 3) or len(around) != len(given):
+            raise ValueError(f"repeats must have shape [{len(given)}, 3], rings one entry for each path")
+        several = [step[2] > 1.0 or ring is not None for step, ring in zip(steps, around, strict=True)]
+        if any(many and (len(p) != 2 or np.array_equal(*p)) for many, p in zip(several, given, strict=True)):
+            raise ValueError("repeats must have shape [k, 3], with paths of two points that differ where n is above 1")
         rows = [simplified(Row(p, s, i, t)) for i, (p, s, t) in enumerate(zip(given, sections, sizes, strict=True))]
-        rows = [row for row in rows if len(row.points) > 1]
-        self.repeats = np.zeros((0, 3))
-        if repeats is None:
-            rows = joined(rows)
-        else:
-            self.repeats = numbers("repeats", repeats)
-            if self.repeats.shape != (len(given), 3) or len(rows) != len(given) or any(len(p) != 2 for p in given):
-                raise ValueError(f"repeats must have shape [{len(given)}, 3], one row for each path of two points")
+        single = joined([row for row in rows if len(row.points) > 1 and not several[row.number]])
+        many = [row for row in rows if several[row.number]]
+        self.repeats = steps[[row.number for row in many]] if many else np.zeros((0, 3))
         self.count = len(given)
         self.ends = ends
-        self.paths = tuple(self._groove(row) for row in rows)
-        self.tapers: list[tuple[np.ndarray, np.ndarray]] = []
+        self.paths = tuple(self._groove(row) for row in single)
+        self.sets = tuple((self._groove(row), around[row.number]) for row in many)
         self.grooves = self._pack()
 
     @staticmethod
@@ -132,98 +145,112 @@ class Pattern:
         return Groove(points, row.section, loop, row.number, row.scales)
 
     def _pack(self) -> GrooveSet:
-        pieces: list[dict[str, Any]] = []
         vertices: list[np.ndarray] = []
+        points: list[np.ndarray] = []
+        tapers: list[tuple[np.ndarray, ...]] = []
         known: dict[bytes, int] = {}
-        shared: dict[int, dict[str, Any]] = {}  # what many grooves have of one section
-        total = 0
-        for groove in self.paths:
+        shared: dict[int, tuple[int, np.ndarray, np.ndarray, int]] = {}  # what many grooves have of one section
+        record: Any = GroovePath
+        stored = np.zeros(len(self.paths) + len(self.sets), dtype=record.numpy_dtype())
+        corners = placed = first = 0
+        whole = [(groove, None) for groove in self.paths]
+        for k, (groove, ring) in enumerate([*whole, *self.sets]):
             section = groove.section
             if id(section) not in shared:
                 key = section.tobytes()
                 if key not in known:
                     runs = run_boxes(section)
-                    known[key] = total + len(runs)
+                    known[key] = corners + len(runs)
                     vertices += [runs, section]
-                    total += len(runs) + len(section)
-                extent = {"low": section.min(0), "high": section.max(0)}
-                shared[id(section)] = {"first": known[key], "count": len(section), **extent, "taper": -1}
-            for piece in self._pieces(groove, len(pieces)):
-                pieces.append({**shared[id(section)], **piece, "path": groove.number})
-        z = np.array([p[name][1] for p in pieces for name in ("low", "high")] or [0.0])
-        x = np.array([p[name][0] for p in pieces for name in ("low", "high")] or [1.0])
-        record: Any = Piece
-        table = np.zeros(len(pieces), dtype=record.numpy_dtype())
-        for k, piece in enumerate(pieces):
-            for name, value in piece.items():
-                table[name][k] = value
+                    corners += len(runs) + len(section)
+                low, high = section.min(0), section.max(0)
+                kind = DIGS_AND_PILES if low[1] < 0.0 < high[1] else 0
+                kind += CAPPED if self.ends == "cap" or not self._goes_on(section) else 0
+                shared[id(section)] = known[key], low, high, kind
+            place, low, high, kind = shared[id(section)]
+            kind += LOOP if groove.loop else 0
+            own, laid = groove.points, len(groove.points) - 1
+            if ring is not None:
+                kind, laid = kind + RINGS, int(ring[1])
+                own = np.array([own[0], (np.linalg.norm(own[1] - own[0]), ring[0])])
+            elif self.ends == "mitre" and not groove.loop and high[0] > 0.0:
+                sizes = groove.scales if groove.scales is not None else np.ones((2, 2))
+                kind += (STARTS if sizes[0].min() > 0.0 else 0) + (STOPS if sizes[-1].min() > 0.0 else 0)
+            taper = -1
+            if groove.scales is not None:
+                taper = len(tapers)
+                tapers += self._tapers(groove, [bit for bit in (STARTS, STOPS) if kind & bit])
+            stored[k] = (first, placed, laid, place, len(section), kind, taper, groove.number)
+            points.append(own)
+            placed += len(own)
+            if k < len(self.paths):
+                first += laid + 2 * bool(kind & STARTS) + 2 * bool(kind & STOPS)
         made = GrooveSet()
-        made.pieces = wp.array(table, dtype=Piece, device="cpu")
-        corners = np.concatenate(vertices) if vertices else np.zeros((0, 2))
-        made.vertices = wp.array(corners, dtype=wp.vec2d, device="cpu")
-        made.bottom, made.top = wp.float64(min(z.min(), 0.0)), wp.float64(max(z.max(), 0.0))
-        made.skin = wp.float64(_SKIN * max(np.abs(z).max(), np.abs(x).max()))
-        made.mixed = int(z.min() < 0.0 < z.max())
+        made.paths = wp.array(stored, dtype=GroovePath, device="cpu")
+        where = np.concatenate(points) if points else np.zeros((0, 2))
+        made.points = wp.array(where, dtype=wp.vec2d, device="cpu")
+        shape = np.concatenate(vertices) if vertices else np.zeros((0, 2))
+        made.vertices = wp.array(shape, dtype=wp.vec2d, device="cpu")
         record = Taper
-        tapers = np.zeros(len(self.tapers), dtype=record.numpy_dtype())
-        for k, (size, grow) in enumerate(self.tapers):
-            tapers["size"][k], tapers["grow"][k] = size, grow
-        made.tapers = wp.array(tapers, dtype=Taper, device="cpu")
-        made.sets, made.start, made.first_step = len(self.repeats), 0, 0
+        grown = np.zeros(len(tapers), dtype=record.numpy_dtype())
+        for k, values in enumerate(tapers):
+            for name, value in zip(("size", "grow", "low", "high"), values, strict=True):
+                grown[name][k] = value
+        made.tapers = wp.array(grown, dtype=Taper, device="cpu")
+        made.first_path, made.path_count, made.sets, made.first_step = 0, len(self.paths), len(self.sets), 0
         made.steps = wp.array(self.repeats, dtype=wp.vec3d, device="cpu")
-        self.table = table
-        self.size = len(table) if not len(self.repeats) else len(self.repeats) * int(self.repeats[:, 2].max())
-        self.memory = table.nbytes + corners.nbytes + tapers.nbytes + self.repeats.nbytes
+        self.stored = stored
+        self.table = make_pieces(made, first)
+        boxes = [shape, grown["low"], grown["high"], self.table["low"], self.table["high"]]
+        z = np.concatenate([[0.0], *(box[:, 1] for box in boxes)])
+        made.bottom, made.top = wp.float64(z.min()), wp.float64(z.max())
+        x = np.concatenate([box[:, 0] for box in boxes]) if len(shape) else np.ones(1)
+        made.skin = wp.float64(_SKIN * max(np.abs(z).max(), np.abs(x).max()))
+        made.wide = wp.float64((1.0 + 1e-9) * np.abs(x).max())
+        made.mixed = int(z.min() < 0.0 < z.max())
+        self.size = first + self._repeated()
+        self.memory = stored.nbytes + where.nbytes + shape.nbytes + grown.nbytes + self.repeats.nbytes
         return made
 
-    def _pieces(self, groove: Groove, first: int) -> list[dict[str, Any]]:
-        p, section = groove.points, groove.section
+    def room(self, count: int) -> Any:
+        """What the device takes, with room for ``count`` pieces near a footprint."""
+        made, own = GrooveSet(), self.grooves
+        for name in _FIELDS:
+            setattr(made, name, getattr(own, name))
+        made.pieces = wp.zeros(count, dtype=Piece, device="cpu")
+        return made
+
+    def _repeated(self) -> int:
+        """How many pieces lines and rings that repeat would be."""
+        total = 0
+        for (groove, ring), step in zip(self.sets, self.repeats, strict=True):
+            total += int(step[2])
+            if ring is not None:
+                radii = np.linalg.norm(groove.points[1] - groove.points[0]) + ring[0] * np.arange(ring[1])
+                total += int(chords(radii, float(np.ptp(groove.section[:, 0]))).sum()) - int(step[2])
+        return total
+
+    def _tapers(self, groove: Groove, ends: list[int]) -> list[tuple[np.ndarray, ...]]:
+        """(size, grow, low, high) of each stretch of a path and of its mitred ``ends``."""
+        p, section, scales = groove.points, groove.section, groove.scales
+        assert scales is not None
         t = tangents(p)
-        pieces = []
+        made: list[tuple[np.ndarray, ...]] = []
         last = len(t) - 1
         for k, along in enumerate(t):
-            here = [(p[k], t[k - 1] if k > 0 or groove.loop else None, -1.0)]
-            here.append((p[k + 1], t[(k + 1) % len(t)] if k < last or groove.loop else None, 1.0))
-            piece: dict[str, Any] = {
-                "origin": p[k], "along": along, "across": (-along[1], along[0]), "partner": -1, "caps": 0,
-            }  # fmt: skip
-            for end, (point, neighbour, sign) in enumerate(here):
-                normal, cap = sign * along, 1
+            piece: dict[str, Any] = {"along": along, "across": (-along[1], along[0])}
+            before = t[k - 1] if k > 0 or groove.loop else None
+            after = t[(k + 1) % len(t)] if k < last or groove.loop else None
+            for end, (neighbour, sign) in enumerate(((before, -1.0), (after, 1.0))):
+                normal = sign * along
                 if neighbour is not None and np.linalg.norm(along + neighbour) > 1e-6:
-                    normal, cap = sign * (along + neighbour) / np.linalg.norm(along + neighbour), 0
-                elif neighbour is None and self.ends == "mitre":
-                    cap = int(not self._goes_on(section))
-                if groove.scales is not None and neighbour is not None:
-                    # facets turn there, and beyond a corner the two profiles do not quite agree
-                    cap = 4 if turn_is_straight(*((neighbour, along) if end == 0 else (along, neighbour))) else 1
-                piece |= {f"end{end}": normal, f"reach{end}": float((point - p[k]) @ normal)}
-                piece["caps"] += cap << end
-            if groove.scales is not None:
-                made = taper_of(section, p[k], p[k + 1], groove.scales[k], groove.scales[k + 1], piece)
-                piece |= {"taper": len(self.tapers), "low": made[2], "high": made[3]}
-                self.tapers.append(made[:2])
-            pieces.append(piece)
-        if self.ends == "mitre" and not groove.loop and section[:, 0].max() > 0.0:
-            for at, along, out in ((0, t[0], -t[0]), (-1, t[-1], t[-1])):
-                point, size = p[at], np.ones(2)
-                if groove.scales is not None:
-                    size = groove.scales[at]
-                    if size.min() <= 0.0:
-                        continue
-                across = np.array([-along[1], along[0]])
-                number = first + len(pieces)
-                low, high = section[:, 0].min() * size[0], section[:, 0].max() * size[0]
-                rim = int(section[:, 1].min() < 0.0 < section[:, 1].max())  # goes round, and drops at its outer edges
-                ends = {"end0": -out, "reach0": 0.0, "end1": out, "reach1": high, "caps": 2 * rim}
-                pieces.append({"origin": point, "along": out, "across": across, "partner": number + 1, **ends})
-                ends = {"end0": -across, "reach0": -low, "end1": across, "reach1": high, "caps": 3 * rim}
-                pieces.append({"origin": point, "along": -across, "across": out, "partner": number, **ends})
-                if groove.scales is not None:
-                    box = {"low": section.min(0) * size, "high": section.max(0) * size, "taper": len(self.tapers)}
-                    self.tapers.append((size, np.zeros(2)))
-                    pieces[-2] |= box
-                    pieces[-1] |= box
-        return pieces
+                    normal = sign * (along + neighbour) / np.linalg.norm(along + neighbour)
+                piece[f"end{end}"] = normal
+            made.append(taper_of(section, p[k], p[k + 1], scales[k], scales[k + 1], piece))
+        for bit in ends:
+            size = scales[0 if bit == STARTS else -1]
+            made.append((size, np.zeros(2), section.min(0) * size, section.max(0) * size))
+        return made
 
     def strips(self) -> np.ndarray:
         """Oriented boxes about the pieces, in their order, for ``scratches.grid.build``."""
@@ -241,24 +268,34 @@ class Pattern:
 
     @cached_property
     def grid(self) -> StripGrid:
-        """The uniform grid in which the pieces near a footprint are looked up."""
-        if len(self.repeats):
-            return build(self.strips()[:0], cell=self.widest(6.0))
-        return build(self.strips())
+        """The uniform grid in which the pieces near a footprint are looked up, by the measured rule."""
+        return self.grid_by()
+
+    def grid_by(self, rule: str = "balanced") -> StripGrid:
+        """The grid with cells by one of ``scratches.grid.RULES``; for grooves that all repeat an empty one."""
+        if not len(self.table):
+            return build(self.strips(), cell=self.widest(6.0))
+        return build(self.strips(), rule)
 
     def widest(self, held: float) -> float:
         """Diameter of a footprint that touches ``held`` pieces on average, were they spread evenly."""
-        table, steps = self.table, self.repeats
-        wide = float((table["high"] - table["low"])[:, 0].mean())
-        if len(steps):
-            apart = np.abs((steps[:, :2] * table["across"]).sum(1))
-            return max(held / float((1.0 / apart).sum()), 2.0 * wide)
-        strips = self.strips()
-        low, high = box(strips)
-        length, width = 2.0 * strips["half"].T
-        # sum of (l + d) (w + d) = held area, solved for d
-        b, c = float(np.sum(length + width)), float(np.sum(length * width)) - held * float(np.prod(high - low))
-        found = (-b + float(np.sqrt(max(b * b - 4.0 * len(strips) * c, 0.0)))) / (2.0 * len(strips))
+        sections = [g.section for g in self.paths] + [g.section for g, _ in self.sets]
+        wide = float(np.mean([np.ptp(s[:, 0]) for s in sections])) if sections else 1.0
+        lines = 0.0  # a length
+        for (groove, ring), step in zip(self.sets, self.repeats, strict=True):
+            along = tangents(groove.points)[0]
+            lines += 1.0 / (ring[0] if ring is not None else abs(float(along[0] * step[1] - along[1] * step[0])))
+        a = b = c = 0.0
+        if len(self.table):
+            strips = self.strips()
+            low, high = box(strips)
+            length, width = 2.0 * strips["half"].T
+            # sum of (l + d) (w + d) = held area, with lines / d more of them
+            area = max(float(np.prod(high - low)), 1e-300)
+            a, b, c = len(strips) / area, float(np.sum(length + width)) / area, float(np.sum(length * width)) / area
+        b, c = b + lines, c - held
+        root = float(np.sqrt(max(b * b - 4.0 * a * c, 0.0)))
+        found = -2.0 * c / (b + root) if b + root > 0.0 else 0.0
         return max(found, 2.0 * wide)
 
     @staticmethod

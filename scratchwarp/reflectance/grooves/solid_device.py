@@ -24,9 +24,9 @@ class Piece:
     reach0 and dot(r, end1) <= reach1 (unit normals outwards). ``caps``: 1 where a wall may stand at the first end,
     plus 2 where one may at the other; 4 and 8 where facets turn there.
     ``first``, ``count``: its vertices, before which lie the boxes (low, high) of runs of them where it is ``grouped``.
-    ``low``, ``high``: smallest and largest x and z of the profile. ``partner``: the other piece of a mitred end, or -1.
-    ``path``: the groove it belongs to. ``taper``: the ``Taper`` of a stretch whose profile grows or shrinks, or -1;
-    ``low`` and ``high`` then hold all along it.
+    ``low``, ``high``: smallest and largest x and z of the profile. ``partner``: the other piece of a mitred end among
+    those found, or -1. ``path``: the groove it belongs to. ``taper``: the ``Taper`` of a stretch whose profile grows or
+    shrinks, or -1; ``low`` and ``high`` then hold all along it.
     """
 
     origin: wp.vec2d
@@ -49,30 +49,57 @@ class Piece:
 @wp.struct
 class Taper:
     """How the profile of a piece changes along it: at u = dot(r, along) x and z are ``size`` + u ``grow`` times those
-    of the vertices."""
+    of the vertices; ``low``, ``high`` as in ``Piece``."""
 
     size: wp.vec2d
     grow: wp.vec2d
+    low: wp.vec2d
+    high: wp.vec2d
+
+
+@wp.struct
+class GroovePath:
+    """What the stretches of a path share, and all that is stored of them besides their points.
+
+    ``first``: number of its first piece; ``point``: its first point; ``count``: stretches, of rings how many rings;
+    ``section``, ``corners``: first vertex of its profile and how many; ``kind``: ``LOOP``, ``CAPPED``, ... added up;
+    ``taper``: the ``Taper`` of its first piece, or -1; ``number``: the path's place among those that were given.
+    """
+
+    first: int
+    point: int
+    count: int
+    section: int
+    corners: int
+    kind: int
+    taper: int
+    number: int
 
 
 @wp.struct
 class GrooveSet:
-    """All pieces of a pattern and the vertices (x, z) of their profiles.
+    """A pattern: paths, their points, the vertices (x, z) of their profiles; and ``pieces``, room for those near a
+    footprint, which ``near_device`` makes there.
 
     No profile facet crosses z = 0. ``bottom`` <= 0 <= ``top``: the lowest and highest z; ``skin``: the length by which
     a point is moved off a surface to see what lies on its sides; ``mixed``: 1 where something digs and something piles
-    up. ``sets`` above 0: pieces repeat; number k is piece ``start`` + s, s = k mod ``sets``, moved k / ``sets`` times
-    by ``steps`` [``first_step`` + s], (x, y, how many there are).
+    up; ``wide``: how far profiles reach from their paths. Paths ``first_path`` on: ``path_count`` of them lie in the
+    grid; ``sets`` further ones are there several times, each moved by ``steps`` (x, y, how many there are), the first
+    of them ``first_step``, or as rings.
     """
 
     pieces: wp.array(dtype=Piece)
+    paths: wp.array(dtype=GroovePath)
+    points: wp.array(dtype=wp.vec2d)
     vertices: wp.array(dtype=wp.vec2d)
     bottom: wp.float64
     top: wp.float64
     skin: wp.float64
     mixed: int
+    wide: wp.float64
+    first_path: int
+    path_count: int
     sets: int
-    start: int
     first_step: int
     steps: wp.array(dtype=wp.vec3d)
     tapers: wp.array(dtype=Taper)
@@ -92,15 +119,8 @@ def grouped(piece: Piece) -> bool:
 
 @wp.func
 def piece_at(grooves: GrooveSet, k: int) -> Piece:
-    """Piece number ``k``."""
-    place = int(k)
-    if grooves.sets > 0:
-        place = grooves.start + k % grooves.sets
-    piece = grooves.pieces[place]
-    if grooves.sets > 0:
-        step = grooves.steps[grooves.first_step + k % grooves.sets]
-        piece.origin = piece.origin + wp.float64(k / grooves.sets) * wp.vec2d(step[0], step[1])
-    return piece
+    """Piece number ``k`` of those that were found."""
+    return grooves.pieces[k]
 
 
 @wp.func

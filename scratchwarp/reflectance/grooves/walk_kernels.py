@@ -7,13 +7,15 @@ from ...optics.sobol_device import sobol_2d
 from ...scratches.grid_device import Grid
 from .facet_device import FacetMaterials, facet_radiance
 from .footprint_device import Footprint, slope_of
-from .near_device import find_near
+from .near_device import find_near, with_room
 from .scatter_device import scatter_facet
-from .solid_device import GrooveSet
+from .solid_device import GrooveSet, Piece
 from .walk_device import make_walk
 
 wp.set_module_options({"enable_backward": False})
 
+
+NEAR = wp.constant(512)  # grooves near a footprint that paths are followed among
 
 walk = make_walk(FacetMaterials, scatter_facet, facet_radiance)
 
@@ -26,7 +28,6 @@ def walks(
     samples: int,
     grid: Grid,
     reach: wp.float64,
-    near: wp.array2d(dtype=int),
     center: wp.array(dtype=wp.vec2d),
     axis1: wp.array(dtype=wp.vec2d),
     axis2: wp.array(dtype=wp.vec2d),
@@ -57,14 +58,17 @@ def walks(
         wide.a1 = wp.vec2d(long, wp.float64(0.0))
         wide.a2 = wp.vec2d(wp.float64(0.0), long)
         flat = wp.vec2d(wp.float64(0.0), wp.float64(0.0))
-        count = wp.min(find_near(grooves, grid, wide, slope, flat, near[t], near.shape[1]), near.shape[1])
+        room = wp.zeros(shape=NEAR, dtype=Piece)
+        ids = wp.zeros(shape=NEAR, dtype=int)
+        held = with_room(grooves, room)
+        count = wp.min(find_near(held, grid, wide, slope, flat, ids, NEAR), NEAR)
         above = grooves.top + wp.float64(1.0e6) * grooves.skin
         total = wp.vec3d(wp.float64(0.0), wp.float64(0.0), wp.float64(0.0))
         for k in range(samples):
             q = sample_concentric_disk(sobol_2d(wp.uint32(k), 0, wp.uint32(t)))
             x = f.center + wp.float64(q[0]) * f.a1 + wp.float64(q[1]) * f.a2 + above * slope
             start = wp.vec3d(x[0], x[1], above)
-            end = walk(grooves, near[t], count, start, -o, materials, omega_i[t], bounces, wp.uint32(k), wp.uint32(t))
+            end = walk(held, ids, count, start, -o, materials, omega_i[t], bounces, wp.uint32(k), wp.uint32(t))
             total += end.light
             if k < position.shape[1]:
                 position[t, k] = end.p

@@ -12,7 +12,6 @@ from . import walk_kernels as kernels
 from .facet import facet_materials
 from .pattern import Pattern
 
-ROOM = 512  # grooves near a footprint that paths are followed among
 REACH = 20.0  # depths of the pattern beyond a footprint within which grooves are met
 
 
@@ -51,13 +50,12 @@ def follow(
     arrays = [*plane, directions("omega_o", omega_o), directions("omega_i", omega_i)]
     lead, inputs = to_device(arrays, [wp.vec2d] * 3 + [wp.vec3d] * 2)
     total = len(inputs[0])
-    near = wp.zeros((total, min(max(g.size, 1), ROOM)), dtype=int, device="cpu")
     light = wp.zeros(total, dtype=wp.vec3d, device="cpu")
     shape = (total, samples if keep else 0)
     rows = [wp.zeros(shape, dtype=wp.vec3d, device="cpu") for _ in range(3)]
     state = wp.zeros(shape, dtype=wp.vec3i, device="cpu")
     reach = wp.float64(REACH * float(g.grooves.top - g.grooves.bottom))
-    given = [g.grooves, materials, bounces, samples, g.grid.data, reach, near, *inputs]
+    given = [g.grooves, materials, bounces, samples, g.grid.data, reach, *inputs]
     wp.launch(kernels.walks, total, inputs=given, outputs=[light, *rows, state], device="cpu")
     places, ways, weights = (r.numpy().reshape(*lead, shape[1], 3) for r in rows)
     inside, met, left = np.moveaxis(state.numpy().reshape(*lead, shape[1], 3), -1, 0)
@@ -81,7 +79,7 @@ def trace(
     (``optics.Conductor``), drawn from the reflectance (``GGX``, ``Diffuse``), or reflected or refracted by Fresnel
     (``optics.Dielectric``, total reflection included). The mean over samples of weight times the radiance that arrives
     along ``direction`` at ``position`` is the footprint's radiance. ``bounces``: surfaces met at most. Grooves more
-    than ``REACH`` depths beyond the footprint, or more than ``ROOM`` of them, are taken for solid. Source: Bosch et al.
+    than ``REACH`` depths beyond the footprint, or more than 512 of them, are taken for solid. Source: Bosch et al.
     2008, section 7, by paths in place of beams. Raises ValueError naming the argument.
     """
     ends = follow(g, center, axis1, axis2, omega_o, [0.0, 0.0, -1.0], reflectance, bounces, samples, True, ground)
