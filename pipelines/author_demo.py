@@ -11,6 +11,7 @@ import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from .command import script
 from .demo_ball import ball
 from .demo_disc import disc
 from .demo_engraved import column, roof, vinyls
@@ -76,30 +77,25 @@ def author(out_dir: Path | str, detail: float = 1.0, names: Sequence[str] = DEFA
     return [STAGES[name](Path(out_dir) / f"{name}.usda", detail) for name in names]
 
 
-def main(argv: Sequence[str] | None = None) -> int:
-    """Command line of this script."""
-    parser = argparse.ArgumentParser(
-        prog="python -m scratchwarp.pipelines.author_demo",
-        description=(__doc__ or "").strip(),
-        epilog="example: python -m scratchwarp.pipelines.author_demo stages --only ball --detail 2",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """What this script understands."""
     parser.add_argument("out_dir", type=Path, help="folder to write into; made when it is not there")
     parser.add_argument("--detail", type=float, default=1.0, help="scales the number of faces [1]")
     parser.add_argument(
         "--only", nargs="+", choices=tuple(STAGES), default=DEFAULT, metavar="NAME",
         help=f"write only these of {', '.join(STAGES)}",
     )  # fmt: skip
-    options = parser.parse_args(argv)
-    try:
-        paths = author(options.out_dir, options.detail, options.only)
-    except (ValueError, OSError) as error:
-        print(f"author_demo: {error}", file=sys.stderr)
-        return 1
-    for path in paths:
-        print(path)
-    return 0
 
+
+def run(options: argparse.Namespace) -> list[Path]:
+    """Write the stages."""
+    return author(options.out_dir, options.detail, options.only)
+
+
+main = script(
+    "author_demo", __doc__, add_arguments, run,
+    "python -m scratchwarp.pipelines.author_demo stages --only ball --detail 2",
+)  # fmt: skip
 
 if __name__ == "__main__":
     sys.exit(main())

@@ -19,6 +19,8 @@ from scratchwarp.render import bar
 from scratchwarp.study import knob_errors
 from scratchwarp.study.calibration import STAGES, calibrate
 
+from .command import WrongUsage, script
+
 
 def calibrated(
     quiet: bool = False, width: int = 96, file: Path | None = None, names: Sequence[str] = STAGES, cold: bool = True
@@ -44,31 +46,25 @@ def errors(file: Path, names: Sequence[str], width: int = 64, spp: int = 64, qui
         return knob_errors.write(file, found, progress)
 
 
-def main(argv: Sequence[str] | None = None) -> int:
-    """Command line of this script."""
-    parser = argparse.ArgumentParser(
-        prog="python -m scratchwarp.pipelines.calibrate",
-        description=(__doc__ or "").strip(),
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """What this script understands."""
     parser.add_argument("file", nargs="?", type=Path, help="where to write; of prices none is the user's own file")
     parser.add_argument("--errors", action="store_true", help="measure what knobs leave instead; FILE is needed")
     parser.add_argument("--stages", nargs="+", default=list(STAGES), metavar="NAME", help="demo stages to render")
     parser.add_argument("--width", type=int, default=96, help="of the images in pixels [96]")
     parser.add_argument("--quiet", action="store_true", help="no progress bar")
-    options = parser.parse_args(argv)
-    if options.errors and options.file is None:
-        parser.error("--errors needs a FILE")
-    try:
-        if options.errors:
-            print(errors(options.file, options.stages, options.width, quiet=options.quiet))
-        else:
-            print(calibrated(options.quiet, options.width, options.file, options.stages))
-    except (ValueError, OSError) as error:
-        print(f"calibrate: {error}", file=sys.stderr)
-        return 1
-    return 0
 
+
+def run(options: argparse.Namespace) -> list[Path]:
+    """Measure, and return the file written."""
+    if options.errors and options.file is None:
+        raise WrongUsage("--errors needs a FILE")
+    if options.errors:
+        return [errors(options.file, options.stages, options.width, quiet=options.quiet)]
+    return [calibrated(options.quiet, options.width, options.file, options.stages)]
+
+
+main = script("calibrate", __doc__, add_arguments, run)
 
 if __name__ == "__main__":
     sys.exit(main())

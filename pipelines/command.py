@@ -67,6 +67,38 @@ class Command:
         return show(report, options)
 
 
+def script(
+    name: str,
+    about: str | None,
+    add_arguments: Callable[[argparse.ArgumentParser], None],
+    run: Callable[[argparse.Namespace], Sequence[object]],
+    example: str = "",
+) -> Callable[..., int]:
+    """``main`` of a script that is no sub-command: ``run`` makes of its options what is printed, a line each; status 1
+    and one message where the input is at fault, 2 where the command line is."""
+
+    def main(argv: Sequence[str] | None = None) -> int:
+        parser = argparse.ArgumentParser(
+            prog=f"python -m scratchwarp.pipelines.{name}",
+            description=(about or "").strip(),
+            epilog=f"example: {example}" if example else None,
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )
+        add_arguments(parser)
+        options = parser.parse_args(argv)
+        try:
+            for line in run(options):
+                print(line)
+        except WrongUsage as error:
+            parser.error(str(error))
+        except (ValueError, OSError, ImportError) as error:
+            print(f"{name}: {error}", file=sys.stderr)
+            return 1
+        return 0
+
+    return main
+
+
 def show(report: Report, options: argparse.Namespace) -> int:
     """Print a report as its options ask and return the status."""
     if options.json:

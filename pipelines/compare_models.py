@@ -12,6 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from .command import script
+
 MODELS = ("ashikhminShirley", "tabulatedNdf", "singleBounce", "table", "mirror", "fullTable")
 BOOST = 8.0
 
@@ -51,37 +53,34 @@ def sheet(pictures: dict[str, np.ndarray], reference: str) -> np.ndarray:
     return np.concatenate([np.concatenate(row, axis=1) for row in rows], axis=0).astype(np.float32)
 
 
-def main(argv: Sequence[str] | None = None) -> int:
-    """Command line of this script."""
-    parser = argparse.ArgumentParser(
-        prog="python -m scratchwarp.pipelines.compare_models",
-        description=(__doc__ or "").strip(),
-        epilog="example: python -m scratchwarp.pipelines.compare_models demo/ball.usda models --width 240",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """What this script understands."""
     parser.add_argument("stage", type=Path, help="USD file")
     parser.add_argument("out", type=Path, help="folder for the pictures; made when missing")
     parser.add_argument("--models", default=",".join(MODELS), help=f"with commas [{','.join(MODELS)}]")
     parser.add_argument("--reference", default="fullTable", help="what the others are compared with [fullTable]")
     parser.add_argument("--width", type=int, default=320, help="pixels [320]")
     parser.add_argument("--spp", type=int, default=64, help="samples a pixel [64]")
-    options = parser.parse_args(argv)
+
+
+def run(options: argparse.Namespace) -> list[str]:
+    """Render, write and compare."""
     from scratchwarp import image
 
-    try:
-        models = [name for name in options.models.split(",") if name]
-        pictures = compare(options.stage, models, options.reference, width=options.width, spp=options.spp)
-        options.out.mkdir(parents=True, exist_ok=True)
-        for name, picture in pictures.items():
-            image.write_layers({"color": picture}, options.out / f"{name}.png", {})
-        image.write_layers({"color": sheet(pictures, options.reference)}, options.out / "models.png", {})
-    except (ValueError, OSError) as error:
-        print(f"compare_models: {error}", file=sys.stderr)
-        return 1
-    for name, (mean, off) in differences(pictures, options.reference).items():
-        print(f"{name:<18} light {mean:6.3f}   difference {off:6.3f}")
-    return 0
+    models = [name for name in options.models.split(",") if name]
+    pictures = compare(options.stage, models, options.reference, width=options.width, spp=options.spp)
+    options.out.mkdir(parents=True, exist_ok=True)
+    for name, picture in pictures.items():
+        image.write_layers({"color": picture}, options.out / f"{name}.png", {})
+    image.write_layers({"color": sheet(pictures, options.reference)}, options.out / "models.png", {})
+    found = differences(pictures, options.reference)
+    return [f"{name:<18} light {mean:6.3f}   difference {off:6.3f}" for name, (mean, off) in found.items()]
 
+
+main = script(
+    "compare_models", __doc__, add_arguments, run,
+    "python -m scratchwarp.pipelines.compare_models demo/ball.usda models --width 240",
+)  # fmt: skip
 
 if __name__ == "__main__":
     sys.exit(main())

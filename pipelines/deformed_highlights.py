@@ -7,11 +7,13 @@ bump is round. Rows of a picture: lit by a lamp alone, and reflecting an environ
 
 import argparse
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+
+from .command import script
 
 EXPONENTS = (8.0, 160.0)  # along the ball's circles of latitude and across them
 LAMP = (-0.45, 0.55, 0.70)
@@ -171,27 +173,25 @@ def author(folder: Path | str, size: int = 200, samples: int = 48, told: Callabl
     return paths
 
 
-def main(argv: Sequence[str] | None = None) -> int:
-    """Command line of this script."""
-    parser = argparse.ArgumentParser(
-        prog="python -m scratchwarp.pipelines.deformed_highlights",
-        description=(__doc__ or "").strip(),
-        epilog="example: python -m scratchwarp.pipelines.deformed_highlights out --size 400",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """What this script understands."""
     parser.add_argument("folder", type=Path, help="folder to write into; made when it is not there")
     parser.add_argument("--size", type=int, default=200, help="pixels across a ball [200]")
     parser.add_argument("--samples", type=int, default=48, help="of the environment, a pixel [48]")
-    options = parser.parse_args(argv)
-    try:
-        if not 8 <= options.size <= 4096 or not 1 <= options.samples <= 65536:
-            raise ValueError(f"size and samples are {options.size}, {options.samples}; expected 8 to 4096, 1 to 65536")
-        author(options.folder, options.size, options.samples)
-    except (ValueError, OSError) as error:
-        print(f"deformed_highlights: {error}", file=sys.stderr)
-        return 1
-    return 0
 
+
+def run(options: argparse.Namespace) -> list[str]:
+    """Write the pictures."""
+    if not 8 <= options.size <= 4096 or not 1 <= options.samples <= 65536:
+        raise ValueError(f"size and samples are {options.size}, {options.samples}; expected 8 to 4096, 1 to 65536")
+    author(options.folder, options.size, options.samples)
+    return []
+
+
+main = script(
+    "deformed_highlights", __doc__, add_arguments, run,
+    "python -m scratchwarp.pipelines.deformed_highlights out --size 400",
+)  # fmt: skip
 
 if __name__ == "__main__":
     sys.exit(main())

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pxr import Gf, Kind, Sdf, Tf, Usd, UsdGeom, UsdLux, UsdRender, UsdShade, Vt
+from pxr import Gf, Kind, Sdf, Usd, UsdGeom, UsdLux, UsdRender, UsdShade, Vt
 
 from scratchwarp import usd_schemas
-from scratchwarp.whole import whole
+from scratchwarp.stage.overlay import save_layer
 
 from .demo_shapes import Shape
 
@@ -38,15 +38,7 @@ def save(stage: Usd.Stage, path: Path | str, comment: str) -> Path:
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     stage.GetRootLayer().comment = f"{comment} Written by scratchwarp.pipelines.author_demo."
-    with whole(path) as draft:
-        try:
-            if not stage.GetRootLayer().Export(str(draft)):
-                raise OSError(f"{path}: cannot be written")
-        except Tf.ErrorException as error:
-            raise OSError(f"{path}: cannot be written: {error}") from None
-    opened = Sdf.Layer.Find(str(path))
-    if opened is not None:
-        opened.Reload(force=True)
+    save_layer(stage.GetRootLayer(), path)
     return path
 
 

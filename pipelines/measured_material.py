@@ -8,15 +8,16 @@ highlight), because that shader has no anisotropy.
 import argparse
 import re
 import sys
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from pxr import Gf, Sdf, Tf, Usd, UsdGeom, UsdShade, Vt
+from pxr import Gf, Sdf, Usd, UsdGeom, UsdShade, Vt
 
 from scratchwarp import usd_schemas
-from scratchwarp.whole import whole
+from scratchwarp.stage.overlay import save_layer
+
+from .command import script
 
 if TYPE_CHECKING:
     from scratchwarp.reflectance.stencils.model import Model
@@ -56,15 +57,7 @@ def author(model: "Model", path: Path | str, name: str | None = None, comment: s
         attribute.Set(value)
     _preview(stage, material, likeness(model))
     stage.GetRootLayer().comment = comment
-    with whole(target) as draft:
-        try:
-            if not stage.GetRootLayer().Export(str(draft)):
-                raise OSError(f"{target}: cannot be written")
-        except Tf.ErrorException as error:
-            raise OSError(f"{target}: cannot be written: {error}") from None
-    opened = Sdf.Layer.Find(str(target))
-    if opened is not None:
-        opened.Reload(force=True)
+    save_layer(stage.GetRootLayer(), target)
     return target
 
 
@@ -133,31 +126,29 @@ def _preview(stage: Usd.Stage, material: UsdShade.Material, inputs: dict[str, An
     material.CreateSurfaceOutput().ConnectToSource(output)
 
 
-def main(argv: Sequence[str] | None = None) -> int:
-    """Command line of this script."""
-    parser = argparse.ArgumentParser(
-        prog="python -m scratchwarp.pipelines.measured_material",
-        description=(__doc__ or "").strip(),
-        epilog="example: python -m scratchwarp.pipelines.measured_material fabric106.bin fabric106.usda",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """What this script understands."""
     parser.add_argument("measured", type=Path, help="measured BRDF: UTIA .bin, MERL .binary or RGL .bsdf")
     parser.add_argument("out", type=Path, help=".usda, .usdc or .usd")
     parser.add_argument("--modes", type=int, help="how many axes of anisotropy; found when not given")
     parser.add_argument("--no-refine", action="store_true", help="the direct fit alone, which needs no scipy")
-    options = parser.parse_args(argv)
+
+
+def run(options: argparse.Namespace) -> list[str]:
+    """Fit and write, and say how near the model is."""
     from scratchwarp import measured, stencils
 
-    try:
-        brdf = measured.load(options.measured)
-        model = stencils.fit(brdf, options.modes, refine=not options.no_refine)
-        path = author(model, options.out, comment=f"Fitted to {options.measured.name}.")
-    except (ValueError, OSError, ImportError) as error:
-        print(f"measured_material: {error}", file=sys.stderr)
-        return 1
+    brdf = measured.load(options.measured)
+    model = stencils.fit(brdf, options.modes, refine=not options.no_refine)
+    path = author(model, options.out, comment=f"Fitted to {options.measured.name}.")
     psnr = measured.compare(brdf, stencils.unfolded(model))["psnr"]
-    print(f"{path}: {len(model.modes)} modes, PSNR {psnr:.1f} dB")
-    return 0
+    return [f"{path}: {len(model.modes)} modes, PSNR {psnr:.1f} dB"]
+
+
+main = script(
+    "measured_material", __doc__, add_arguments, run,
+    "python -m scratchwarp.pipelines.measured_material fabric106.bin fabric106.usda",
+)  # fmt: skip
 
 
 def brdf_of(source: str, material: str | None = None) -> tuple[Any, list[str]]:

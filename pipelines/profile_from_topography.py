@@ -5,6 +5,7 @@ found (that of the straight line along which the mean height stands out most), a
 stands out most cut out between its shoulders; or the whole mean profile is kept as one period.
 """
 
+import zipfile
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -57,6 +58,17 @@ def load(path: Path | str, pitch: float | None = None, height: float | None = No
     [um] between samples is then needed), or an image (its red channel, ``height`` [um] from black to white). Raises
     ValueError on anything else, OSError where the file cannot be read."""
     path = Path(path)
+    if not path.is_file():
+        raise FileNotFoundError(f"{path}: no such file")
+    try:
+        return _load(path, pitch, height)
+    except (ValueError, EOFError, zipfile.BadZipFile) as error:
+        if str(path) in str(error):
+            raise
+        raise ValueError(f"{path}: holds no height map that can be read ({error})") from None
+
+
+def _load(path: Path, pitch: float | None, height: float | None) -> Topography:
     if path.suffix.lower() in IMAGES:
         from scratchwarp.image import read_texture
 

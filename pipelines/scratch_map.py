@@ -4,11 +4,11 @@ or along a direction. Any renderer that knows UsdPreviewSurface can use it.
 
 import argparse
 import math
-import re
 import sys
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
+
+from .command import script
 
 _STAGES = (".usda", ".usdc", ".usd")
 
@@ -74,24 +74,10 @@ def run(options: argparse.Namespace) -> list[Path]:
     )
 
 
-def main(argv: Sequence[str] | None = None) -> int:
-    """Command line of this script."""
-    parser = argparse.ArgumentParser(
-        prog="python -m scratchwarp.pipelines.scratch_map",
-        description=re.sub(r"\s+", " ", __doc__ or ""),
-        epilog="example: python -m scratchwarp.pipelines.scratch_map worn.png --direction 0 --spread 5 --stage b.usda",
-    )
-    add_arguments(parser)
-    options = parser.parse_args(argv)
-    try:
-        paths = run(options)
-    except (ValueError, OSError) as error:
-        print(f"scratch_map: {error}", file=sys.stderr)
-        return 1
-    for path in paths:
-        print(path)
-    return 0
-
+main = script(
+    "scratch_map", __doc__, add_arguments, run,
+    "python -m scratchwarp.pipelines.scratch_map worn.png --direction 0 --spread 5 --stage b.usda",
+)  # fmt: skip
 
 if __name__ == "__main__":
     sys.exit(main())

@@ -138,3 +138,12 @@ def test_bad_maps_are_refused(content, tmp_path, capsys):
     error = capsys.readouterr().err
     assert error.startswith("topography: ") and len(error.splitlines()) == 1
     assert not (tmp_path / "out.usda").exists()
+
+
+def test_what_is_no_height_map_is_named(tmp_path):
+    for name, data in (("a.npz", b"no zip"), ("a.npy", b"nothing"), ("a.txt", b"(1, 2)"), ("b.npz", b"")):
+        (tmp_path / name).write_bytes(data)
+        with pytest.raises(ValueError, match=f"{name}: holds no height map"):
+            pipeline.load(tmp_path / name, pitch=1.0)
+    with pytest.raises(FileNotFoundError, match="nowhere.npz: no such file"):
+        pipeline.load(tmp_path / "nowhere.npz")
