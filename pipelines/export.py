@@ -47,6 +47,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> Report:
     """What ``add_arguments`` were parsed into; ValueError and OSError where the input is at fault."""
+    from scratchwarp.stage.open import gathered_diagnostics
+    from scratchwarp.stage.reading import Warnings
     from scratchwarp.whole import whole
 
     from .asset_folder import replaced
@@ -58,7 +60,8 @@ def run(options: argparse.Namespace) -> Report:
     if options.blur is not None and not 0.0 <= options.blur <= 30.0:
         raise WrongUsage(f"--blur {options.blur} is not in [0, 30]")
     targets = [name for name in TARGETS if name in options.to]
-    with replaced(Path(options.out), options.stage, REPORT) as folder:
+    heard = Warnings()  # what USD says of the asset, render and validate say
+    with gathered_diagnostics(options.stage, heard), replaced(Path(options.out), options.stage, REPORT) as folder:
         record = _export(options, folder, targets)
         with whole(folder / REPORT) as draft:
             draft.write_text(json.dumps(record, indent=1, default=str) + "\n", encoding="utf-8")
