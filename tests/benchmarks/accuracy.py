@@ -2,7 +2,7 @@
 
     python tests/benchmarks/accuracy.py [FOLDER] [--width 96] [--stages kettle wood painted vinyl] [--quick]
     python tests/benchmarks/accuracy.py FOLDER --predicted     # predicted seconds alone, over processor seconds
-    python tests/benchmarks/accuracy.py --plots docs --stages gold spoon grooves_crossing --budget 60
+    python tests/benchmarks/accuracy.py --plots docs --stages gold disc column --width 48 --budget 60
 
 For each stage and each error from 0.1 to 0.003: the error reached against a reference of 4096 samples and the knobs'
 reference values, over what was asked for; what the chosen settings cost over the cheapest settings of a grid that meet
@@ -100,11 +100,14 @@ def predictions(name: str, scene: Any) -> list[dict[str, Any]]:
     return rows
 
 
-def plots(folder: Path, stages: list[str], width: int, budget: float) -> None:
+def plots(folder: Path, stages: list[str], width: int, budget: float, knobs: list[str] | None) -> None:
     """Error against seconds of every knob of the stages, ``budget`` seconds each."""
     with tempfile.TemporaryDirectory() as made:
         for file in map(Path, author(made, names=stages)):
-            report = sw.study.sweep(sw.read(file), settings=sw.Settings(width=width, spp=8), budget=budget, repeats=2)
+            scene, settings = sw.read(file), sw.Settings(width=width, spp=8)
+            known = acting(sw.make_plan(scene, settings))
+            names = [name for name in knobs if name in known] if knobs else None
+            report = sw.study.sweep(scene, names, settings=settings, budget=budget, repeats=2)
             names = [name for name in report.about["defaults"] if len(report.knob_rows(name)) > 1]
             joint = [row for row in report.rows if len(row.knobs) > 1]
             drawn = chart({name: report.knob_rows(name) for name in names}, joint, report.pareto())
@@ -119,6 +122,7 @@ def main() -> None:
     parser.add_argument("--width", type=int, default=96)
     parser.add_argument("--stages", nargs="+")
     parser.add_argument("--predicted", action="store_true", help="predicted seconds alone")
+    parser.add_argument("--knobs", nargs="+", help="of --plots; all that act on a stage unless given")
     parser.add_argument("--budget", type=float, default=600.0, help="seconds a stage of --plots [600]")
     parser.add_argument("--plots", metavar="DIR", help="study the stages instead; DIR/accuracy_STAGE.svg, as in docs/")
     parser.add_argument("--quick", action="store_true", help="two errors, one seed, small grid")
@@ -126,7 +130,7 @@ def main() -> None:
     folder = Path(args.folder)
     folder.mkdir(parents=True, exist_ok=True)
     if args.plots:
-        plots(Path(args.plots), args.stages or list(STAGES), args.width, 60.0 if args.quick else args.budget)
+        plots(Path(args.plots), args.stages or list(STAGES), args.width, args.budget, args.knobs)
         return
     rows: list[dict[str, Any]] = []
     if args.predicted:

@@ -149,7 +149,7 @@ def test_a_quality_leaves_a_part_of_its_noise_at_the_lowest_price():
 
 
 SUN = DistantLight(path="/sun", radiance=np.ones(3), direction=np.array([0.3, 0.0, -0.954]))
-GROOVE = replace(S.scratched().layers[0], distribution="linear", width=400.0, depth=100.0, pitch=800.0, model="groove")
+GROOVE = replace(S.scratched().layers[0], distribution="linear", width=400.0, depth=100.0, pitch=8000.0, model="groove")
 
 
 def grooved(*layers, **settings):
@@ -161,7 +161,7 @@ def grooved(*layers, **settings):
 def test_grooves_cost_by_what_lies_under_a_footprint():
     """Twice as dense, twice the facets a line; crossing ones take as many lines as asked for, parallel ones one."""
     one = grooved(GROOVE).each["grooves", "grooves.lineFacets"]
-    two = grooved(replace(GROOVE, pitch=400.0)).each["grooves", "grooves.lineFacets"]
+    two = grooved(replace(GROOVE, pitch=4000.0)).each["grooves", "grooves.lineFacets"]
     assert 1.5 < two / one < 3.0
     crossed = replace(GROOVE, name="cross", distribution="crosshatch")
     few, many = (grooved(crossed, knobs={"grooves.lines": n}).each["grooves.crossings", "grooves.lines"]

@@ -21,8 +21,8 @@ SWEEP = 1.5
 """Depths of a groove by which view and light together shift what is seen of it."""
 PARTS = 8
 """Pieces of a part of a line."""
-ROOM = 64
-"""Pieces that a footprint may have; of more, light is found by rays."""
+HELD = 16.0
+"""Pieces under the part of a footprint that is looked at: wider ones are looked at by parts."""
 GOES_ON = 0.7
 """How often a path in grooves meets another facet."""
 CHORD = 0.02
@@ -62,13 +62,13 @@ def groove_units(scene: Scene, plan: EffectPlan, shares: Sequence[float]) -> Uni
             near *= t * t * (3.0 - 2.0 * t)
         if any(layer.section[:, 1].max() > 0.0 for layer in own.layers):
             near = 1.0  # what stands out darkens the ground
-        count = max(pieces / max(near, 1e-9), 1.0)
+        count = min(max(pieces / max(near, 1e-9), 1.0), HELD)
         facets = sum(one.near * one.facets for one in laid) / max(pieces, 1e-12)
         by_ray = sum(one.at * one.facets for one in laid) / max(near, 1e-9)
         each = float(share) * near
         add("grooves.found", each * (1.0 + points))
         follows = 2.0 + bounces + (1.0 + bounces) * wide + bounces * points
-        exact = each * points * math.exp(-max(count - ROOM, 0.0) / ROOM)
+        exact = each * points
         add("grooves.rays", each * follows)
         add("grooves.rayFacets", each * follows * by_ray)
         alone = 1.0
