@@ -11,6 +11,8 @@ from ..scene import Layer, Material, PreviewSurface, Scene, ScratchSurface, Text
 from .choice import LayerPlan
 from .profiles import cross_section
 
+COARSE = {"draft": 2, "preview": 1}
+"""Thousandths of a width by which cross-sections may be off where the knob is left to the quality; else 0."""
 ARCS = 8  # chords for each arc of a smooth cross-section
 # Widths of a footprint in widths of a groove between which model auto goes over to tables.
 NEAR, FAR = 2.0, 6.0
@@ -22,11 +24,13 @@ MOST = 20_000  # scratches on a surface that model auto lays out
 class GrooveLayerPlan:
     """A layer to lay out; ``section``: its cross-section [n, 2] in widths of the groove at the layer's aspect, x from 0
     to 1; ``own``: what its facets are made of (a ``ScratchSurface``, "mirror"), None for what the surface is made
-    of."""
+    of; ``slack``: how far [widths] cross-sections may be off the authored ones; ``facets``: of the authored one."""
 
     layer: Layer
     section: np.ndarray
     own: Any = None
+    slack: float = 0.0
+    facets: int = 0
 
     def section_at(self, part: float) -> np.ndarray:
         """The cross-section ``part`` of the way to the layer's other profile. Raises ValueError where there is none
@@ -36,7 +40,7 @@ class GrooveLayerPlan:
             return self.section
         first, last = cross_section(layer.profile, layer), cross_section(layer.profile_end, layer)
         try:
-            return np.array(profiles.between(first, last, part).polyline(ARCS))
+            return profiles.simplified(np.array(profiles.between(first, last, part).polyline(ARCS)), self.slack)
         except ValueError as error:
             raise ValueError(f"{layer.label}: {part:.3g} of the way to {layer.profile_end.path}: {error}") from None
 
@@ -114,18 +118,40 @@ def _changes(values: np.ndarray, counts: np.ndarray) -> bool:
     return bool((np.abs(np.diff(values))[inner] > 1e-6 * np.abs(values).max(initial=0.0)).any())
 
 
+def slack_of(value: Any, quality: str | None) -> float:
+    """Widths by which cross-sections may be off, of the knob ``grooves.section``."""
+    return 1e-3 * float(COARSE.get(quality or "", 0) if value == "auto" else value)
+
+
+def _layer_plan(layer: Layer, slack: float) -> GrooveLayerPlan:
+    drawn = np.array(cross_section(layer.profile, layer).polyline(ARCS))
+    return GrooveLayerPlan(layer, profiles.simplified(drawn, slack), _own(layer), slack, len(drawn) - 1)
+
+
+def coarse_sections(grooves: Sequence["GroovePlan | None"]) -> str:
+    """What ``explain`` says of cross-sections that were simplified; "" where none is."""
+    coarse = [own for plan in grooves if plan is not None for own in plan.layers if len(own.section) - 1 < own.facets]
+    return "; ".join(
+        f"{own.layer.label}: {len(own.section) - 1} of {own.facets} facets, off by at most {own.slack:g} of the width "
+        f"({own.slack * own.layer.width:.3g} {'um' if own.layer.space == 'surface' else 'of uv'})"
+        for own in coarse
+    )
+
+
 def plan_grooves(
     scene: Scene,
     wanted: Callable[[Material, Layer], bool],
     model: str | None = None,
     near: Callable[[int], list[Layer]] = lambda number: [],
     waves: Sequence[Any] = (),
+    slack: float = 0.0,
 ) -> tuple[GroovePlan | None, ...]:
     """For each material what of it is laid out groove by groove, None where nothing is.
 
     ``wanted(material, layer)``: whether it may; ``model``: in place of every layer's own; ``near(number)``: layers of a
     material of which none is wanted that are laid out where they are near; ``waves``: for each material what of it
-    diffracts, or None. Raises ValueError on a profile that cannot be drawn.
+    diffracts, or None; ``slack``: widths by which cross-sections may be off. Raises ValueError on a profile that cannot
+    be drawn.
     """
     used = {m for i in scene.instances for m in i.materials}
     made: list[GroovePlan | None] = []
@@ -134,14 +160,10 @@ def plan_grooves(
         for authored in material.layers if number in used else ():
             layer = replace(authored, model=model) if model else authored
             if wanted(material, layer):
-                profile = cross_section(layer.profile, layer)
-                section = np.array(profile.polyline(ARCS))
-                own.append(GrooveLayerPlan(layer, section, _own(layer)))
+                own.append(_layer_plan(layer, slack))
         handover = not own and number in used
         if handover:
-            own = [
-                GrooveLayerPlan(x, np.array(cross_section(x.profile, x).polyline(ARCS)), _own(x)) for x in near(number)
-            ]
+            own = [_layer_plan(x, slack) for x in near(number)]
         wave = waves[number] if number < len(waves) else None
         names = {w.layer.label for w in wave.layers} if wave is not None else set()
         waved = handover and any(x.layer.label in names for x in own)

@@ -14,8 +14,8 @@ from .cost.aim import aim, suited
 from .cost.shares import shares
 from .coverage import baked_thresholds
 from .effects import EFFECTS, Facts, sampled_lights
-from .grooves import laid_out, mark_near, plan_grooves, refracts
-from .knobs import by_quality, checked, turned_tables
+from .grooves import coarse_sections, laid_out, mark_near, plan_grooves, refracts, slack_of
+from .knobs import by_quality, checked, turned_tables, value
 from .layers import mean_color, plan_layers, reflector
 from .models import base_responses
 from .nearby import SMOOTH_BASE, near_layers
@@ -135,7 +135,8 @@ def _planned(scene: Scene, settings: Settings, earlier: EffectPlan | None) -> Ef
             smooth = mean_color(getattr(material.surface, "roughness", 0.0), scene)[0] <= SMOOTH_BASE
             return near_layers(scene, decided, size, number, waves[number], asked is True, tabled, smooth)
 
-        grooves = plan_grooves(scene, grooved, decided.model, near, waves)
+        slack = slack_of(value(decided.knobs, "grooves.section"), decided.quality)
+        grooves = plan_grooves(scene, grooved, decided.model, near, waves, slack)
         layers = mark_near(layers, grooves)
         used = sorted({m for instance in scene.instances for m in instance.materials})
         responses, bases = base_responses(scene, used, responses, lambda effect: forced.get(effect, True))
@@ -186,6 +187,8 @@ def _planned(scene: Scene, settings: Settings, earlier: EffectPlan | None) -> Ef
     }
     if far:
         numbers["stencils"] = far
+    if coarse_sections(grooves):
+        numbers["grooves"] = coarse_sections(grooves)
     if decided.max_error is not None:
         numbers["error"] = f"samples grow from {decided.spp} until relMSE is estimated below {decided.max_error:g}"
     if decided.knobs:

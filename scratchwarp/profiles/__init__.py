@@ -6,7 +6,8 @@ Fresnel as rows, ``energy_kernels`` and ``polarised_kernels`` what paths carry a
 of both passes, ``launch`` threads; ``tracing`` columns and symmetries, ``balance`` (and its kernels) whole tables,
 ``simulation`` the calls, ``mixture`` averages of tables; ``theta`` models along the scratch, ``theta_choice`` their
 errors; ``table`` the result, ``table_device`` and ``table_kernels`` its sampling; ``facet_table`` one of facets and
-masking alone; ``drawing`` a picture of it; ``single_rays`` rays to look at; ``cache`` tables on disk.
+masking alone; ``drawing`` a picture of it; ``single_rays`` rays to look at; ``simplify`` fewer facets; ``cache`` tables
+on disk.
 """
 
 from scratchwarp.profiles.cache import Store as Store
@@ -20,6 +21,7 @@ from scratchwarp.profiles.mixture import mixture as mixture
 from scratchwarp.profiles.profile import Profile as Profile
 from scratchwarp.profiles.shapes import shape as shape
 from scratchwarp.profiles.shapes import shape_names as shape_names
+from scratchwarp.profiles.simplify import simplified as simplified
 from scratchwarp.profiles.simulation import simulate as simulate
 from scratchwarp.profiles.simulation import simulate_full as simulate_full
 from scratchwarp.profiles.single_rays import Rays as Rays

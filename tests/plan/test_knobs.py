@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 import scratchwarp as sw
@@ -9,7 +10,7 @@ from scratchwarp.kernels import geometry, grooves
 from scratchwarp.kernels.assemble import camera_data, kernel_key
 from scratchwarp.plan.effects import EFFECTS
 from scratchwarp.plan.knobs import KNOBS, acting, by_quality, checked
-from scratchwarp.scene import Wave
+from scratchwarp.scene import Profile, Wave
 from scratchwarp.scene.knob import Knob
 from scratchwarp.scene.output import RenderOptions
 
@@ -50,6 +51,7 @@ APPROXIMATIONS = {
     "sampler": "tables.sampler",
     "bounces": "tables.bounces",
     "bounces in grooves": "grooves.bounces",
+    "cross-sections of grooves": "grooves.section",
     "theta model": "tables.theta",
     "wavelengths": "diffraction.wavelengths",
     "look-up tables": "diffraction.colors",
@@ -124,6 +126,27 @@ def test_grooves_have_the_lines_and_bounces_asked_for():
     arrays, _ = built(**{"grooves.lines": 192, "grooves.bounces": 2})
     assert (arrays.slices, arrays.bounces) == (48, 2)
     assert not built(**{"grooves.footprint": "axis"})[1].on("grooves.crossings")
+
+
+def test_grooves_have_the_cross_sections_asked_for():
+    """65 points of a semicircle: all of them unless a draft or a knob asks for fewer, which the plan says."""
+    x = np.linspace(0.0, 1.0, 65)
+    arc = np.stack([x, -np.sqrt(np.maximum(1.0 - (2.0 * x - 1.0) ** 2, 0.0))], 1)
+    layer = replace(
+        S.scratched().layers[0], distribution="linear", pitch=200.0, width=100.0, depth=50.0, model="groove",
+        profile=Profile("/p", shape="points", points=arc),
+    )  # fmt: skip
+    world = S.scene([S.plane()], [replace(S.scratched(), layers=(layer,))], [S.dome()])
+
+    def facets(**asked):
+        made = sw.make_plan(world, sw.Settings(width=8, height=8, **asked))
+        return len(made.grooves[0].layers[0].section) - 1, made.explain()
+
+    assert facets()[0] == 64 and "of 64 facets" not in facets()[1]
+    assert facets(quality="reference")[0] == 64 and facets(quality="draft", knobs={"grooves.section": 0})[0] == 64
+    few, text = facets(quality="draft")
+    assert 14 <= few <= 24 and f"{few} of 64 facets, off by at most 0.002 of the width (0.2 um)" in text
+    assert facets(knobs={"grooves.section": 20})[0] < few < facets(quality="preview")[0] < 40
 
 
 def test_the_stage_turns_knobs_and_the_user_goes_before_it():

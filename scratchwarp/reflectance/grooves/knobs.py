@@ -36,6 +36,15 @@ KNOBS = (
         quality=(12, 48, 48, 192),
     ),
     Knob(
+        name="grooves.section",
+        values=(20, 10, 5, 2, 1, "auto", 0),
+        default="auto",
+        error="cross-sections of fewer facets, off the authored ones by so many thousandths of a width at most",
+        sets="groove.section",
+        effects=("grooves",),
+        limits=(0, 100),
+    ),
+    Knob(
         name="grooves.bounces",
         values=(1, 2, 4, 8, 16),
         default=BOUNCES,
