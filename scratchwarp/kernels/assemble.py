@@ -254,7 +254,7 @@ def assemble(
         lambda: maps.pack_maps(scene, plan.layers, shape.arrays, key.masks, key.orientations, device),
     )
     scratch_set.variations = material.pack_variations(plan.layers if key.variation else (), device)
-    waved = tuple(tuple((x.layer.label, x.slack) for x in w.layers) if w is not None else () for w in plan.waves)
+    waved = tuple(tuple(x.layer.label for x in w.layers) if w is not None else () for w in plan.waves)
     knobs = plan.settings.knobs
     sliced = sorted((turned(knobs, "wave") | turned(knobs, "glint")).items())
     sparkle = parts.part(
