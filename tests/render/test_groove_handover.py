@@ -33,18 +33,27 @@ def look(ratio):
     )  # fmt: skip
 
 
-def test_a_zoom_shows_no_switch():
+def sheet(surface):
+    """Shallow V grooves under a lamp and a sky."""
     vee = Profile(path="/mat/vee", shape="vGroove")
     material = scenes.scratched(
-        scenes.white_metal(0.5), distribution="linear", width=WIDTH, pitch=2 * WIDTH, depth=20.0, profile=vee, angle=0.4
+        surface, distribution="linear", width=WIDTH, pitch=2 * WIDTH, depth=20.0, profile=vee, angle=0.4
     )
     lamp = DistantLight(path="/lamp", radiance=np.full(3, 4.0), direction=np.array([0.3, 0.3, -0.9]), angle=1.2)
-    world = scenes.scene([scenes.plane(2.0)], [material], [lamp, scenes.dome(0.5)], [scenes.place()], look(1.0))
+    return scenes.scene([scenes.plane(2.0)], [material], [lamp, scenes.dome(0.5)], [scenes.place()], look(1.0))
+
+
+@pytest.fixture
+def flip():
+    """The evaluator, of the extra ``study``."""
+    return pytest.importorskip("flip_evaluator")
+
+
+def test_a_zoom_shows_no_switch():
+    world = sheet(scenes.white_metal(0.5))
     means, noise = [], []
     for ratio in RATIOS:
-        settings = sw.Settings(
-            width=SIZE, height=SIZE, spp=SPP, filter="box", integrator="direct"
-        )
+        settings = sw.Settings(width=SIZE, height=SIZE, spp=SPP, filter="box", integrator="direct")
         # one plan, so one kernel, for every image
         plan = sw.make_plan(world, settings)
         assert plan.on("grooves") and plan.on("grooves.handover") and plan.on("scratches.linear")
@@ -55,6 +64,25 @@ def test_a_zoom_shows_no_switch():
     steps = np.array(means[1:]) / means[:-1]
     assert steps == pytest.approx(np.ones(len(steps)), abs=0.01), (means, noise)
     assert max(noise) < 1.5 * max(noise[0], noise[-1])
+
+
+def test_frames_of_a_zoom_show_no_switch(flip):
+    """FLIP of frames 4 % apart, from near to far: in the band no pair differs more than the worst one outside of it.
+
+    It falls all the way, from 0.05 where grooves are made out to 0.01; a twentieth is the noise of one pair.
+    """
+    world = sheet(scenes.white_metal(0.5))
+    plan = sw.make_plan(world, sw.Settings(width=SIZE, height=SIZE, spp=SPP, filter="box", integrator="direct"))
+
+    def differ(ratio):
+        pair = [sw.render(replace(world, camera=look(r)), plan)["color"] for r in (ratio, 1.04 * ratio)]
+        shown = [np.clip(0.45 * p / pair[0].mean(), 0.0, 1.0).astype(np.float32) for p in pair]
+        return flip.evaluate(*shown, "LDR", inputsRGB=False)[1]
+
+    outside = [differ(r) for r in (1.3, 1.8, FAR, 8.0)]
+    inside = [differ(r) for r in (NEAR, 2.7, 3.6, 4.6, 5.6)]
+    assert max(inside) < 1.05 * max(outside), (inside, outside)
+    assert min(outside[:2]) > 2.0 * max(outside[2:])
 
 
 def test_waves_are_grooves_near_by():
