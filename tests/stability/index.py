@@ -127,6 +127,21 @@ SCENES = {
         f"{_DIFFRACTION}/test_lighting.py::test_furnace",
         f"{_GROOVES}/test_bounces.py::test_white_furnaces",
     ),
+    "grooves of any size, shape, place and view": (
+        f"{_HERE}/test_late_effects.py::test_grooves_of_any_size_look_the_same",
+        f"{_HERE}/test_late_effects.py::test_grooves_placed_are_as_if_modelled_so",
+        f"{_HERE}/test_late_effects.py::test_grooves_of_any_shape_under_a_sky",
+        f"{_HERE}/test_late_effects.py::test_lights_at_and_below_the_horizon_of_grooves",
+        f"{_HERE}/test_late_effects.py::test_grazing_and_back_facing_views_of_grooves",
+        "render/test_groove_hard_cases.py::test_finite_and_continuous",
+        "render/test_groove_glass.py::test_nothing_is_lost_or_gained",
+        "render/test_groove_handover.py::test_a_zoom_shows_no_switch",
+    ),
+    "scratches that interfere in one place, of any size": (
+        f"{_HERE}/test_late_effects.py::test_scratches_in_the_same_place_interfere",
+        f"{_HERE}/test_late_effects.py::test_pairs_of_any_size_and_light",
+        "render/test_diffraction_pairs.py::test_never_negative",
+    ),
     "stages damaged at random": (f"{_HERE}/test_fuzz.py::test_damaged_stages",),
 }
 HARD_CASES = {**GEOMETRIC, **WAVES, **SCENES}
