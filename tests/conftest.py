@@ -1,4 +1,7 @@
-"""What every test stands on: schemas that USD finds whoever opens the first stage, and a cache of its own."""
+"""What every test stands on: schemas that USD finds whoever opens the first stage, and a cache of the run's own.
+
+The processes of one run (pytest-xdist) share that cache: whoever starts first makes it, those it starts inherit it.
+"""
 
 import os
 import shutil
@@ -7,10 +10,12 @@ import tempfile
 from scratchwarp import usd_schemas
 
 usd_schemas.set_environment()
-_cache = tempfile.mkdtemp(prefix="scratchwarp-tests-")
-os.environ["SCRATCHWARP_CACHE"] = _cache
+_made = None
+if "PYTEST_XDIST_WORKER" not in os.environ:
+    _made = os.environ["SCRATCHWARP_CACHE"] = tempfile.mkdtemp(prefix="scratchwarp-tests-")
 
 
 def pytest_unconfigure():
-    """Remove the tests' cache."""
-    shutil.rmtree(_cache, ignore_errors=True)
+    """Remove the cache that this process made."""
+    if _made:
+        shutil.rmtree(_made, ignore_errors=True)
