@@ -34,7 +34,10 @@ def blank(path: Path, name: str) -> Path:
     else:
         usd.mesh(stage, "ball", shapes.sphere(4.2, (0.2, 0.5, 0.8), 48, 96), prim, (0.0, 4.2, 0.0))
     high = 3.6 if name not in DISCS + PLATES else 0.0
-    usd.sphere_light(stage, "bulb", (9.0, 24.0, -14.0), 0.6, 900.0)
+    if name in PLATES:  # mirrored in the middle, and no brighter than a smooth plate bears
+        usd.sphere_light(stage, "bulb", (-3.0, 24.0, -27.0), 0.6, 150.0)
+    else:
+        usd.sphere_light(stage, "bulb", (9.0, 24.0, -14.0), 0.6, 900.0)
     usd.sphere_light(stage, "lamp", (-14.0, 20.0, 16.0), 0.8, 300.0, (1.0, 0.85, 0.7))
     usd.rect_light(stage, "window", (-22.0, 22.0, -16.0), (0.0, high, 0.0), (16.0, 16.0), 4.0, (0.86, 0.93, 1.0))
     usd.dome_light(stage, "ambient", 0.25, (0.85, 0.91, 1.0))

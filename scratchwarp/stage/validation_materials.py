@@ -58,7 +58,7 @@ def check_sizes(prim: Usd.Prim) -> Iterator[Problem]:
                 "warning",
             )
         yield from check_unread(prim, layer, get["distribution"])
-        if get["distribution"] in REGULAR and get["width"] > get["pitch"] * (1 + 1e-6):
+        if get["distribution"] in REGULAR and get["width"] > get["pitch"] * (1 + 1e-6) > 0:
             yield Problem(
                 layer_attribute(prim, layer, "width").GetPath(),
                 f"width of layer {layer!r} is {get['width']:g} but its scratches lie {get['pitch']:g} apart and so "

@@ -60,13 +60,13 @@ def test_interrupted_and_resumed_gives_the_same_bits(plain, tmp_path, monkeypatc
     seen = []
 
     @contextmanager
-    def interrupted(quiet, title):
+    def interrupted(quiet):
         def progress(done, total, stage):
             if stage == "trace" and 3 * done > total:
                 seen.append(done)
                 raise KeyboardInterrupt
 
-        yield progress
+        yield lambda title: progress
 
     argv = [
         "render",
@@ -80,7 +80,7 @@ def test_interrupted_and_resumed_gives_the_same_bits(plain, tmp_path, monkeypatc
         str(tmp_path / "c"),
     ]
     with monkeypatch.context() as patch:
-        patch.setattr(rooms, "bar", interrupted)
+        patch.setattr(rooms, "bars", interrupted)
         assert main(argv) == 130
     assert seen and "--resume" in capsys.readouterr().err
     assert [p.name for p in tmp_path.iterdir()] == ["c"]

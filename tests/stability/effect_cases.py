@@ -277,7 +277,7 @@ CASES: dict[str, Case] = {
     "diffraction.pairs": Case(waves(Wave(samples=4, summation="coherent")), waves(), grows=None),
     "diffraction.pointFootprint": force("diffraction.pointFootprint", waves(), grows=None),
     # wavelengths are sampled on both sides, so that none has the table of lights without extent
-    "diffraction.areaLights": Case(waves(SAMPLED, EXTENT), waves(SAMPLED), where="light"),
+    "diffraction.areaLights": Case(waves(SAMPLED, EXTENT), waves(SAMPLED), where="light", grows=True),
     "diffraction.lookup": Case(waves(lights=EXTENT), waves(SAMPLED, EXTENT), grows=True),
     "diffraction.distantLookup": Case(waves(), waves(SAMPLED), grows=True),
     "diffraction.outlines": Case(waves(SAMPLED, profile=VEE), waves(SAMPLED), grows=True),
