@@ -287,9 +287,11 @@ def _set(prim: Usd.Prim, name: str, value: Any) -> None:
 
 
 def _value(value: Any) -> Any:
-    """Tuples of three as vectors, pairs and lists of pairs as float2; all else as it is."""
+    """Tuples of three as vectors, pairs and lists of pairs as float2, lists of strings as they are; all else, too."""
     if isinstance(value, tuple):
         return Gf.Vec3f(*value) if len(value) == 3 else Gf.Vec2f(*value)
+    if isinstance(value, list) and all(isinstance(one, str) for one in value):
+        return Vt.StringArray(value)
     if isinstance(value, list):
         return Vt.Vec2fArray([Gf.Vec2f(*map(float, pair)) for pair in value])
     return value
