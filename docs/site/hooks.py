@@ -80,7 +80,7 @@ def made_pages(docs: Path) -> dict[str, str]:
 
 
 def told() -> dict[str, dict[str, Any]]:
-    """What effects.toml says: family -> picture, source, page, schema, effects."""
+    """What effects.toml says: family -> picture, pictures, source, page, schema, effects."""
     return tomllib.loads((Path(__file__).parent / "effects.toml").read_text(encoding="utf-8"))
 
 
@@ -95,7 +95,7 @@ def effect(name: str, docs: Path) -> str:
     from scratchwarp.plan.knobs import KNOBS
 
     family = told().get(name.split(".")[0], {})
-    picture = family.get("picture", "ball.png")
+    picture = family.get("pictures", {}).get(name, family.get("picture", "ball.png"))
     lines = [f"# {name}", "", summary(name), ""]
     if (docs / picture).is_file():
         lines += [f"![{name.split('.')[0]}](../{picture})", ""]
