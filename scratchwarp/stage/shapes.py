@@ -154,9 +154,16 @@ def _revolve(profile: Profile) -> Built:
 def _colors(reading: Reading, prim: Usd.Prim, count: int) -> np.ndarray | None:
     primvar = UsdGeom.PrimvarsAPI(prim).FindPrimvarWithInheritance("displayColor")
     got = primvar.Get(reading.time) if primvar and primvar.HasValue() else None
-    if got is None or not len(got):
+    if got is None:
         return None
-    if len(got) > 1:
+    values = np.asarray(got)
+    values = values[None] if type(got).__name__.startswith("Vec3") and values.shape == (3,) else values
+    if not values.size:
+        return None
+    if values.dtype.kind not in "fiu" or values.ndim != 2 or values.shape[1] < 3 or not np.isfinite(values).all():
+        reading.warn(primvar.GetAttr().GetPath(), "holds no colours; it is ignored")
+        return None
+    if len(values) > 1:
         reading.warn(primvar.GetAttr().GetPath(), "has more than one value; the first colours the whole shape")
-    first = color(reading, primvar.GetAttr(), np.array(got[0], np.float64))
+    first = color(reading, primvar.GetAttr(), values[0, :3].astype(np.float64))
     return np.broadcast_to(first, (count, 3, 3))

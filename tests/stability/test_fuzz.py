@@ -13,6 +13,8 @@ ONCE = {
     4: "a scratched surface under a light with a specular multiplier did not compile",
     44: "a million grooves were laid out before they were counted",
     310: "a camera whose far plane is a millimetre away had no matrix of depths",
+    1365: "a shape's displayColor was a file",
+    1404: "a shape's displayColor was one number",
 }
 _compiled: set = set()
 
