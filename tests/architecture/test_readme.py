@@ -45,7 +45,7 @@ def test_no_binary_assets():
     folders = ("docs", "pipelines", "scratchwarp", "tests", "usd_schemas", "viewers")
     files = [p for folder in folders for p in (repository() / folder).rglob("*") if p.suffix in kinds]
     pictures = ("ball", "profiles_shapes", "anisotropy_bumps", "anisotropy_scratches", "models", "diffraction")
-    pictures += ("grooves", "materials", "presets", "zoom")
+    pictures += ("grooves", "grooves_scenes", "materials", "presets", "zoom")
     assert {p.relative_to(repository()) for p in files} <= {Path(f"docs/{name}.png") for name in pictures}
     assert all(p.stat().st_size < 400_000 for p in files)
 
