@@ -117,8 +117,9 @@ def suited(
 ) -> Suited:
     """The cheapest knobs that leave an error which the noise of ``samples`` a pixel hides; those ``given`` stay.
 
-    Nothing depends on the camera, the part that is rendered or the machine, so that crops and frames of a shot have
-    the same knobs: materials count alike, one thread, and prices are those that are shipped.
+    Nothing depends on the part that is rendered or on the machine, so that crops have the same knobs: materials count
+    alike, one thread, and prices are those that are shipped. Of the camera only how many grooves and scratches that
+    diffract lie under a footprint counts, so frames of a zoom onto these may differ.
     """
     prices, left = prices or shipped(), left or errors()
     one, power = left.noise

@@ -166,43 +166,42 @@ def stride_at(vertices: wp.array(dtype=wp.vec2d), piece: Piece, j: int, x: wp.fl
 
 
 @wp.func
+def beyond_facets(
+    vertices: wp.array(dtype=wp.vec2d), piece: Piece, x: wp.float64, z: wp.float64, sign: wp.float64
+) -> bool:
+    """Whether (x, z) lies beyond an odd number of the profile's facets under (sign 1) or over (-1) the plane."""
+    zero = wp.float64(0.0)
+    odd = int(0)
+    j = int(piece.first)
+    while j < piece.first + piece.count - 1:
+        on = stride_at(vertices, piece, j, x)
+        if on == 0:
+            on = 1
+            a = vertices[j]
+            b = vertices[j + 1]
+            if sign * a[1] <= zero and sign * b[1] <= zero and (a[0] <= x) != (b[0] <= x):
+                if sign * (a[1] + (b[1] - a[1]) * (x - a[0]) / (b[0] - a[0])) < sign * z:
+                    odd = 1 - odd
+        j += on
+    return odd == 1
+
+
+@wp.func
 def is_dug(vertices: wp.array(dtype=wp.vec2d), piece: Piece, x: wp.float64, z: wp.float64) -> bool:
     """Whether the profile leaves air at (x, z), z <= 0: an odd number of facets below."""
-    zero = wp.float64(0.0)
-    below = int(0)
+    result = False
     if piece.taper >= 0 or (x >= piece.low[0] and x <= piece.high[0] and z > piece.low[1]):
-        j = int(piece.first)
-        while j < piece.first + piece.count - 1:
-            on = stride_at(vertices, piece, j, x)
-            if on == 0:
-                on = 1
-                a = vertices[j]
-                b = vertices[j + 1]
-                if a[1] <= zero and b[1] <= zero and (a[0] <= x) != (b[0] <= x):
-                    if a[1] + (b[1] - a[1]) * (x - a[0]) / (b[0] - a[0]) < z:
-                        below = 1 - below
-            j += on
-    return below == 1
+        result = beyond_facets(vertices, piece, x, z, wp.float64(1.0))
+    return result
 
 
 @wp.func
 def is_piled(vertices: wp.array(dtype=wp.vec2d), piece: Piece, x: wp.float64, z: wp.float64) -> bool:
     """Whether the profile piles solid up at (x, z), z >= 0: an odd number of facets above."""
-    zero = wp.float64(0.0)
-    above = int(0)
+    result = False
     if piece.taper >= 0 or (x >= piece.low[0] and x <= piece.high[0] and z < piece.high[1]):
-        j = int(piece.first)
-        while j < piece.first + piece.count - 1:
-            on = stride_at(vertices, piece, j, x)
-            if on == 0:
-                on = 1
-                a = vertices[j]
-                b = vertices[j + 1]
-                if a[1] >= zero and b[1] >= zero and (a[0] <= x) != (b[0] <= x):
-                    if a[1] + (b[1] - a[1]) * (x - a[0]) / (b[0] - a[0]) > z:
-                        above = 1 - above
-            j += on
-    return above == 1
+        result = beyond_facets(vertices, piece, x, z, wp.float64(-1.0))
+    return result
 
 
 @wp.func
