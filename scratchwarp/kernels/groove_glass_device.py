@@ -10,6 +10,7 @@ import warp as wp
 
 from ..optics.fresnel_device import fresnel_dielectric
 from ..optics.microfacets_device import ggx_g1, ggx_sample_visible
+from ..optics.refraction_device import axial_squared, refract
 from ..optics.sampling_device import sample_cosine_hemisphere
 from ..reflectance.base_device import DELTA_ALPHA, DIELECTRIC, Base, BaseSample, mean3
 
@@ -103,11 +104,10 @@ def refracted(b: Base, wo: wp.vec3, u: wp.vec2, clear: float, chance: float) -> 
     if rough:
         h = ggx_sample_visible(wo, b.alpha_x, b.alpha_y, u)
     c = wp.min(wp.dot(wo, h), 1.0)
-    sine2 = (1.0 - c * c) / (b.ior * b.ior)
-    if c > 0.0 and sine2 < 1.0:
-        wi = (c / b.ior - wp.sqrt(1.0 - sine2)) * h - wo / b.ior
+    if c > 0.0 and axial_squared(c, b.ior) > 0.0:
+        wi = refract(wo, h, c, b.ior)
         if wi[2] < 0.0:
-            result.wi = wp.normalize(wi)
+            result.wi = wi
             result.weight = clear * (1.0 - fresnel_dielectric(c, b.ior)) / wp.max(chance, 1.0e-6)
             if rough:
                 result.weight *= ggx_g1(wp.vec3(wi[0], wi[1], -wi[2]), b.alpha_x, b.alpha_y)

@@ -32,8 +32,8 @@ def amplitudes(cos_theta: Any, eta: Any, k: Any = 0.0) -> tuple[np.ndarray, np.n
     """
     cosine = np.asarray(cos_theta, np.float64)
     index = np.asarray(eta, np.float64) + 1j * np.asarray(k, np.float64)
-    sine2 = (1.0 - cosine) * (1.0 + cosine)
-    axial = np.sqrt(index * index - sine2 + 0j)  # the index times the refracted cosine
+    # the index times the refracted cosine; index^2 - sin^2 without cancellation
+    axial = np.sqrt((index - 1.0) * (index + 1.0) + cosine * cosine + 0j)
     axial = np.where(axial.imag < 0.0, -axial, axial)
     with np.errstate(invalid="ignore", divide="ignore"):
         r_s = (cosine - axial) / (cosine + axial)
@@ -220,8 +220,8 @@ class Dielectric:
             r_s, r_p = amplitudes(cosine, self.ior)
             return 0.5 * (np.abs(r_s) ** 2 + np.abs(r_p) ** 2)
         if self.ior < 1.0:
-            refracted2 = 1.0 - (1.0 - cosine) * (1.0 + cosine) / self.ior**2
-            cosine = np.sqrt(np.maximum(refracted2, 0.0))
+            axial2 = (self.ior - 1.0) * (self.ior + 1.0) + cosine * cosine
+            cosine = np.sqrt(np.maximum(axial2, 0.0)) / self.ior
         return _schlick(cosine, np.asarray(self.f0))
 
 

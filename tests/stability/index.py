@@ -137,6 +137,21 @@ SCENES = {
         "render/test_groove_glass.py::test_nothing_is_lost_or_gained",
         "render/test_groove_handover.py::test_a_zoom_shows_no_switch",
     ),
+    "grooved glass: an index of 1, grazing angles, slabs, either way through it, any size": (
+        f"{_HERE}/test_glass.py::test_an_index_of_one_is_not_there",
+        f"{_HERE}/test_glass.py::test_nor_is_it_at_grazing_angles",
+        f"{_HERE}/test_glass.py::test_a_slab_reflects_and_passes_what_the_sum_of_its_echoes_says",
+        f"{_HERE}/test_glass.py::test_a_facet_lets_through_as_much_either_way",
+        f"{_HERE}/test_glass.py::test_a_grooved_surface_lets_through_as_much_either_way",
+        f"{_HERE}/test_glass.py::test_scenes_of_any_size_look_the_same",
+        "render/test_groove_glass.py::test_nothing_is_lost_or_gained",
+    ),
+    "grooves that are tables far away: any size, place and distance": (
+        f"{_HERE}/test_handover.py::test_scaled_with_the_camera",
+        f"{_HERE}/test_handover.py::test_moved_with_the_camera",
+        f"{_HERE}/test_handover.py::test_the_plan_sees_the_same_size",
+        f"{_HERE}/test_handover.py::test_farther_off_they_are_laid_out_no_more_often",
+    ),
     "scratches that interfere in one place, of any size": (
         f"{_HERE}/test_late_effects.py::test_scratches_in_the_same_place_interfere",
         f"{_HERE}/test_late_effects.py::test_pairs_of_any_size_and_light",

@@ -1,4 +1,5 @@
-"""As ``terms``, of what came later: pairs of scratches, stretches of them, fringes under the sun, changing grooves."""
+"""As ``terms``, of what came later: pairs of scratches, stretches of them, fringes under the sun, changing grooves,
+glass."""
 
 from typing import Any
 
@@ -104,6 +105,15 @@ def _meets_naive(*row: Any) -> Any:
     return (-np.sqrt(b * b - 4.0 * a * c) - b) / (2.0 * a)
 
 
+def _refracted(c: Any, ior: Any, *_: Any) -> Any:
+    c, ior = np.longdouble(c), np.longdouble(ior)
+    return np.sqrt((ior - 1) * (ior + 1) + c * c) / ior
+
+
+def _refracted_naive(c: Any, ior: Any, *_: Any) -> Any:
+    return np.sqrt(F(1) - (F(1) - c * c) / (ior * ior))
+
+
 def _tapers() -> Any:
     table: Any = Taper
     row = np.zeros(1, table.numpy_dtype())
@@ -144,5 +154,10 @@ LATE: dict[str, Term] = {
         "reflectance/grooves/taper_device.py:meets_facet", probes.tapers,
         [[0.1, -0.4, 0.5, 0.1, 0.0], [2.0, 0.3, 0.2, 0.7, 0.1]], _meets, _meets_naive,
         "-b - sqrt(b^2 - 4 a c) cancels: half per thousand", 1e-12, double=True, more=_tapers,
+    ),
+    "refraction at grazing angles": Term(
+        "optics/refraction_device.py:refract", probes.refraction,
+        [[1e-4, 1.0], [1e-3, 1.0], [1e-3, 1 + 1e-6], [1e-3, 1.00001], [0.0045, 1 / 1.00001], [0.5, 1.5]],
+        _refracted, _refracted_naive, "1 - sin^2 / ior^2 cancels: 0 at 1e-4, per thousands to per cents", 1e-5,
     ),
 }  # fmt: skip

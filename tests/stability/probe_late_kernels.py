@@ -1,5 +1,5 @@
 """As ``probe_kernels``: pieces of scratches under a footprint, pairs of them, fringes under the sun, grooves that
-change along themselves."""
+change along themselves, glass."""
 
 import warp as wp
 
@@ -7,6 +7,7 @@ from scratchwarp.kernels.glint_arrays_device import GlintArrays, WaveLayer
 from scratchwarp.kernels.glint_fringes_device import fringes_of
 from scratchwarp.kernels.glint_pairs_device import across_amplitude, sinc
 from scratchwarp.kernels.glint_stretch_device import between
+from scratchwarp.optics.refraction_device import refract
 from scratchwarp.reflectance.grooves.solid_device import GrooveSet, Piece
 from scratchwarp.reflectance.grooves.taper_device import meets_facet
 
@@ -51,3 +52,12 @@ def tapers(x: Rows64, out: Rows64, grooves: GrooveSet):
         grooves, piece, wp.vec2d(-one, zero), wp.vec2d(wp.float64(2.0), -one), wp.vec2d(x[i, 0], x[i, 1]),
         wp.vec2d(x[i, 3], x[i, 4]), x[i, 2], -one, one,
     )  # fmt: skip
+
+
+@wp.kernel
+def refraction(x: Rows, out: Rows):
+    """Cosine of the direction refracted from (sqrt(1 - x[0]^2), 0, x[0]) into a medium of index x[1]."""
+    i = wp.tid()
+    c = x[i, 0]
+    o = wp.vec3(wp.sqrt((1.0 - c) * (1.0 + c)), 0.0, c)
+    out[i, 0] = -refract(o, wp.vec3(0.0, 0.0, 1.0), c, x[i, 1])[2]

@@ -3,6 +3,7 @@
 import warp as wp
 
 from ...optics.fresnel_device import fresnel_dielectric
+from ...optics.refraction_device import axial_squared, refract
 from .facet_device import CLEAR, DIFFUSE, GLOSSY, PI, FacetMaterials, facet_fresnel, material_of, smith_g1
 
 wp.set_module_options({"enable_backward": False})
@@ -81,9 +82,8 @@ def scatter_facet(
             if wp.dot(normal, o) < zero:
                 eta = one / eta
             reflected = wp.float64(fresnel_dielectric(float(cos_o), float(eta)))
-            cos2 = one - (one - cos_o * cos_o) / (eta * eta)
-            if u[0] >= reflected and cos2 > zero:
-                result.d = wp.normalize((cos_o / eta - wp.sqrt(cos2)) * n - o / eta)
+            if u[0] >= reflected and axial_squared(cos_o, eta) > zero:
+                result.d = refract(o, n, cos_o, eta)
                 result.through = 1
         else:
             result.weight = facet_fresnel(material, cos_o)
