@@ -1,5 +1,5 @@
 """Where each hard case is tested: case -> tests, as ``path::function`` below ``tests``. ``test_index`` sees to it that
-they exist; what the folder adds itself is listed, too."""
+they exist and that ``docs/stability.md`` has the same table, which ``python -m tests.stability.index`` prints."""
 
 _DIFFRACTION = "reflectance/diffraction"
 _GROOVES = "reflectance/grooves"
@@ -8,20 +8,27 @@ _HERE = "stability"
 
 GEOMETRIC = {
     "vertical walls": (f"{_GROOVES}/test_visibility.py::test_box_is_seen_and_lit_where_both_reach",),
-    "phi at a right angle": ("profiles/test_simulate.py::test_grazing_bins_conserve_energy",),
+    "phi at a right angle, 1 / cos in grazing bins": ("profiles/test_simulate.py::test_grazing_bins_conserve_energy",),
     "a ray through a vertex": ("profiles/test_tracer.py::test_rays_through_vertices_are_kept",),
     "concave cusps, a whispering gallery": (
         "profiles/test_tracer.py::test_whispering_gallery_is_followed",
         "profiles/test_simulate.py::test_deep_box_reports_what_it_loses",
     ),
     "no epsilon against self-intersection": ("profiles/test_tracer.py::test_size_does_not_matter",),
+    "float32 against float64 paths": (
+        "profiles/test_tracer.py::test_paths_agree_with_float64_brute_force",
+        "profiles/test_tracer.py::test_random_outlines_agree_with_brute_force",
+    ),
     "zero depth, zero width": (
         "profiles/test_simulate.py::test_flat_profile_is_the_anti_diagonal",
         "profiles/test_profile.py::test_impossible_outlines_are_refused",
     ),
     "theta at a right angle": ("profiles/test_theta.py::test_slices_at_the_ends_are_exact",),
     "gamma of nothing and of dips": ("profiles/test_theta.py::test_exponent_is_safe_and_flagged_where_there_is_none",),
-    "duplicated points": ("profiles/test_tracer.py::test_duplicated_points_change_nothing",),
+    "duplicated points": (
+        "profiles/test_tracer.py::test_duplicated_points_change_nothing",
+        f"{_GROOVES}/test_visibility.py::test_doubled_vertices_and_flat_ground",
+    ),
     "bulges and overhangs": (
         "profiles/test_simulate.py::test_undercut_bulging_profile_against_brute_force",
         f"{_GROOVES}/test_visibility.py::test_rays_see_the_same",
@@ -34,7 +41,13 @@ GEOMETRIC = {
         "reflectance/mdf/test_density.py::test_hard_cases_are_finite",
         f"{_HERE}/test_terms.py::test_stable",
     ),
-    "stencils at their poles": ("reflectance/stencils/test_evaluate.py::test_hard_cases_are_finite",),
+    "the square-root deformation off its disk": (
+        "reflectance/mdf/test_density.py::test_square_root_loses_energy_and_leaves_the_disk",
+    ),
+    "stencils at their poles, b and alpha that explode at grazing angles": (
+        "reflectance/stencils/test_evaluate.py::test_hard_cases_are_finite",
+        "reflectance/stencils/test_evaluate.py::test_furnace",
+    ),
 }
 WAVES = {
     "1 sinc at 0, M at 0": (
@@ -52,11 +65,12 @@ WAVES = {
         f"{_DIFFRACTION}/test_terms.py::test_ends_where_the_naive_product_is_zero_times_infinity",
     ),
     "6 short intervals": (f"{_DIFFRACTION}/test_float32.py::test_integrals_from_zero_and_of_short_intervals",),
-    "7 zeros far out; Eq. 29 of large arguments": (
+    "7 zeros far out; Eq. 29 of large arguments, tanh of 100": (
         f"{_DIFFRACTION}/test_metamorphic.py::test_zeros_where_the_width_is_whole_waves",
         f"{_DIFFRACTION}/test_float32.py::test_the_printed_integral_stays_finite",
     ),
-    "8 tangent lights": (
+    "8 tangent lights, bounds that the printed equations miss, B = 0": (
+        f"{_HERE}/test_waves.py::test_lights_straight_across",
         f"{_DIFFRACTION}/test_light_geometry.py::test_bounds_that_the_printed_equations_miss",
         f"{_DIFFRACTION}/test_float32.py::test_small_and_tangent_caps",
     ),
@@ -81,46 +95,102 @@ WAVES = {
         f"{_DIFFRACTION}/test_light_geometry.py::test_slivers_and_disks",
     ),
 }
+_META = f"{_DIFFRACTION}/test_metamorphic.py"
+METAMORPHIC = {
+    "light and distance scaled": (f"{_META}::test_light_and_distance_scale_together",),
+    "wavelength, width, depth and coherence radius scaled": (
+        f"{_META}::test_wavelength_width_depth_and_coherence_radius_scale_together",
+    ),
+    "turned; half a turn of the scratch": (
+        f"{_META}::test_everything_turned_about_the_normal",
+        f"{_META}::test_a_scratch_has_no_direction",
+    ),
+    "polygons cut, wound the other way": (
+        f"{_META}::test_a_polygon_is_the_sum_of_its_triangles",
+        f"{_META}::test_winding_does_not_matter",
+    ),
+    "means that know no coherence radius": (f"{_META}::test_the_mean_over_a_footprint_knows_no_coherence_radius",),
+    "light from everywhere": (f"{_META}::test_light_from_everywhere_gives_the_whole_lobe",),
+    "depths of half waves, widths of whole ones": (
+        f"{_META}::test_depths_of_whole_half_waves_are_invisible",
+        f"{_META}::test_zeros_where_the_width_is_whole_waves",
+    ),
+    "a Gaussian across": (f"{_META}::test_distance_across_is_a_gaussian",),
+    "reciprocity": (f"{_META}::test_reciprocity", f"{_GROOVES}/test_bounces.py::test_bounces_are_reciprocal"),
+    "never negative, never less of more light": (
+        f"{_META}::test_radiance_is_never_negative",
+        f"{_META}::test_more_light_is_never_less",
+    ),
+}
 SCENES = {
-    "position of the scene": ("render/test_invariance.py::test_moved_and_scaled",),
+    "position of the scene": (
+        "render/test_invariance.py::test_moved_and_scaled",
+        f"{_HERE}/test_energy.py::test_far_from_the_origin",
+    ),
     "scale of the scene, 1e-6 to 1e6": (
         f"{_HARD}::test_scenes_of_any_size",
         f"{_HERE}/test_scenes.py::test_scaled_scenes_look_the_same",
+        f"{_HERE}/test_energy.py::test_bodies",
         f"{_DIFFRACTION}/test_light_geometry.py::test_sizes_from_atoms_to_stars",
     ),
-    "needle triangles": (f"{_HERE}/test_scenes.py::test_needles_look_like_the_triangles_they_cut",),
+    "needle triangles": (
+        f"{_HERE}/test_scenes.py::test_needles_look_like_the_triangles_they_cut",
+        f"{_HERE}/test_energy.py::test_bodies",
+    ),
     "degenerate triangles": (
         f"{_HARD}::test_faces_without_area",
+        f"{_HERE}/test_energy.py::test_bodies",
         "kernels/test_geometry.py::test_a_triangle_without_area_makes_no_nan",
     ),
-    "coincident surfaces": (f"{_HERE}/test_scenes.py::test_coincident_surfaces_look_like_one",),
-    "mirrored and sheared transforms": (f"{_HERE}/test_scenes.py::test_placed_is_as_if_modelled_so",),
+    "coincident surfaces": (
+        f"{_HERE}/test_scenes.py::test_coincident_surfaces_look_like_one",
+        f"{_HERE}/test_energy.py::test_bodies",
+    ),
+    "mirrored and sheared transforms": (
+        f"{_HERE}/test_scenes.py::test_placed_is_as_if_modelled_so",
+        f"{_HERE}/test_energy.py::test_bodies",
+    ),
     "singular transforms": (
         f"{_HARD}::test_squashed_instances",
+        f"{_HERE}/test_energy.py::test_bodies",
         f"{_HERE}/test_bad_stages.py::test_transforms_over_time",
     ),
     "zero and huge widths, depths, densities": (
         f"{_HARD}::test_extreme_layers",
+        f"{_HERE}/test_energy.py::test_layers",
+        f"{_HERE}/test_energy.py::test_waves",
         f"{_HERE}/test_waves.py::test_any_size_and_wavelength",
     ),
-    "zero and huge wavelengths": (f"{_HERE}/test_waves.py::test_any_size_and_wavelength",),
+    "zero and huge wavelengths": (
+        f"{_HERE}/test_waves.py::test_any_size_and_wavelength",
+        f"{_HERE}/test_waves.py::test_no_wavelength_is_said",
+        f"{_HERE}/test_energy.py::test_waves",
+    ),
     "lights at the horizon, of zero and of huge size, inside and around": (
         f"{_HARD}::test_lights_that_touch",
         f"{_HERE}/test_scenes.py::test_no_more_light_than_a_sky_of_it",
         "lights/test_light_hard_cases.py::test_everything_is_finite",
     ),
-    "grazing views": (f"{_HARD}::test_grazing_views",),
-    "back-facing views": (f"{_HARD}::test_camera_inside", f"{_HERE}/test_scenes.py::test_normals_that_face_elsewhere"),
+    "grazing views": (f"{_HARD}::test_grazing_views", f"{_HERE}/test_energy.py::test_bodies"),
+    "back-facing views": (
+        f"{_HARD}::test_camera_inside",
+        f"{_HERE}/test_scenes.py::test_normals_that_face_elsewhere",
+        f"{_HERE}/test_energy.py::test_bodies",
+    ),
     "seams and poles of uv": (
         f"{_HERE}/test_scenes.py::test_poles_and_seams_of_a_mapping_neither_shine_nor_are_dark",
         f"{_HARD}::test_degenerate_mappings",
+        f"{_HERE}/test_energy.py::test_bodies",
     ),
     "NaN and infinity in arrays": (
         f"{_HERE}/test_bad_numbers.py::test_records_refuse_what_is_no_number",
         f"{_HERE}/test_bad_numbers.py::test_functions_refuse_what_is_no_number",
         f"{_HERE}/test_bad_stages.py::test_any_number_may_be_none",
     ),
-    "time samples with singular matrices": (f"{_HERE}/test_bad_stages.py::test_transforms_over_time",),
+    "time samples with singular matrices": (
+        f"{_HERE}/test_bad_stages.py::test_transforms_over_time",
+        f"{_HERE}/test_energy.py::test_matrices_over_time",
+    ),
     "no energy above 1": (
         "render/test_furnace.py::test_mirrors_vanish",
         "render/test_furnace.py::test_rough_surfaces_never_gain_energy",
@@ -159,5 +229,14 @@ SCENES = {
     ),
     "stages damaged at random": (f"{_HERE}/test_fuzz.py::test_damaged_stages",),
 }
-HARD_CASES = {**GEOMETRIC, **WAVES, **SCENES}
+HARD_CASES = {**GEOMETRIC, **WAVES, **METAMORPHIC, **SCENES}
 """Every hard case -> its tests."""
+
+
+def rows() -> list[str]:
+    """The table of the documentation, a row a case."""
+    return [f"| {case} | {', '.join(f'`{test}`' for test in tests)} |" for case, tests in HARD_CASES.items()]
+
+
+if __name__ == "__main__":
+    print("\n".join(rows()))

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from .index import HARD_CASES
+from .index import HARD_CASES, rows
 from .test_terms import ALL
 
 TESTS = Path(__file__).resolve().parent.parent
@@ -29,3 +29,9 @@ def test_the_documentation_lists_the_stable_formulations():
     text = (TESTS.parent / "docs" / "stability.md").read_text(encoding="utf-8")
     missing = [name for name, term in ALL.items() if f"| {name} | `{term.where}` |" not in text]
     assert not missing
+
+
+def test_the_documentation_lists_the_hard_cases():
+    """What is missing, or of no use any more: ``python -m tests.stability.index`` prints them all."""
+    text = (TESTS.parent / "docs" / "stability.md").read_text(encoding="utf-8").splitlines()
+    assert [line for line in text if "::test_" in line and line.startswith("| ")] == rows()

@@ -37,6 +37,18 @@ def test_lights_at_any_size_and_wavelength(method):
         assert (value <= 4.0 * share * (1.0 + 1e-6)).all()
 
 
+@pytest.mark.parametrize("method", ["slices", "closed-form"])
+@pytest.mark.parametrize("x", [0.0, -0.0, 1e-300])
+def test_lights_straight_across(method, x):
+    """The centre in the plane across the scratch, where the printed bounds divide 0 by 0: as after a turn of all."""
+    for center in ([x, -0.3, 0.9], [x, 0.0, 1.0]):
+        light, turned = (diffraction.SphereLight(np.array(c), 0.2) for c in (center, [0.3, x, 0.9]))
+        turned = turned if center[1] else light
+        value = diffraction.radiance(light, UP, diffraction.Scratch(azimuth=0.0), 550.0, method=method)
+        other = diffraction.radiance(turned, UP, diffraction.Scratch(azimuth=0.5 * np.pi), 550.0, method=method)
+        assert value > 0.0 and value == pytest.approx(other, rel=1e-9)
+
+
 @pytest.mark.parametrize("bad", [0.0, -500.0, np.inf, np.nan])
 def test_no_wavelength_is_said(bad):
     with pytest.raises(ValueError, match="wavelength"):
