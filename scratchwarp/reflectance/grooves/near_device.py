@@ -5,7 +5,7 @@ import warp as wp
 from ...scratches.grid_device import Grid, cell_at, item_at
 from .footprint_device import Footprint, swept_range, touches
 from .solid_device import GroovePath, GrooveSet, Piece
-from .stored_device import RINGS, chords_of, mitred, path_with, piece_made, ring_piece, stretch, with_section
+from .stored_device import RINGS, chords_of, mitred, path_with, phase_of, piece_made, ring_piece, stretch, with_section
 
 wp.set_module_options({"enable_backward": False})
 
@@ -62,6 +62,7 @@ def find_lines(
     found: int, room: int,
 ) -> int:  # fmt: skip
     """``find_near`` for a line that is there several times; ``found``: how many pieces there are before."""
+    half = wp.float64(0.5)
     count = int(found)
     piece = stretch(grooves, path, 0)
     origin = piece.origin
@@ -74,6 +75,13 @@ def find_lines(
     first = int(wp.clamp(wp.floor(wp.min(low, high)), wp.float64(0.0), last))
     stop = int(wp.clamp(wp.ceil(wp.max(low, high)), wp.float64(0.0), last))
     if stop - first > 2 * room + 2:
+        # there is no room for all: those next to the middle stand for them
+        spare = wp.max(room - count, 0)
+        begin = wp.clamp(half * (low + high), wp.float64(first), wp.float64(stop)) - wp.float64(spare / 2)
+        begin = wp.floor(wp.clamp(begin, wp.float64(first), wp.float64(stop - spare)))
+        for k in range(spare):
+            piece.origin = origin + (begin + wp.float64(k)) * wp.vec2d(step[0], step[1])
+            grooves.pieces[count + k] = piece
         count += stop - first
     else:
         for i in range(first, stop + 1):
@@ -109,6 +117,16 @@ def find_rings(
     first = int(wp.clamp(wp.floor((near - wide - inner) / pitch), wp.float64(0.0), last))
     stop = int(wp.clamp(wp.ceil((far + wide - inner) / pitch), wp.float64(0.0), last))
     if stop - first > 2 * room + 8:
+        # as for lines
+        turned = wp.atan2(middle[1], middle[0])
+        spare = wp.max(room - count, 0)
+        begin = wp.clamp((away - inner) / pitch, wp.float64(first), wp.float64(stop)) - wp.float64(spare / 2)
+        begin = wp.clamp(begin, wp.float64(first), wp.float64(stop - spare))
+        for k in range(spare):
+            ring = int(begin) + k
+            n = chords_of(inner + wp.float64(ring) * pitch, form.high[0] - form.low[0])
+            j = int(wp.floor(turned * wp.float64(n) / wp.float64(2.0 * wp.PI) - phase_of(ring)))
+            grooves.pieces[count + k] = ring_piece(grooves, path, ring, j)
         count += stop - first
     else:
         reach = wp.length(box) + wide
@@ -193,6 +211,9 @@ def find_near(
                                     grooves.pieces[count + 1] = other
                                     ids[count] = k
                                     ids[count + 1] = k + 1 - 2 * half
+                                elif count < room:
+                                    grooves.pieces[count] = piece
+                                    ids[count] = k
                                 count += 2
     for a in range(wp.min(count, room)):
         ids[a] = a

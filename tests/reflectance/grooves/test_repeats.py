@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from scratchwarp import grooves
+from scratchwarp import grooves, optics
 from scratchwarp.scene import Layer, Profile
 from scratchwarp.scratches.paths import lay_out, repeated
 
@@ -52,3 +52,23 @@ def test_rings_are_those_laid_out():
 def test_repeats_name_what_is_wrong():
     with pytest.raises(ValueError, match="repeats must have shape"):
         grooves.Pattern([[[0, 0], [1, 0]]], V, repeats=[[0, 1, 3], [0, 1, 3]])
+
+
+@pytest.mark.parametrize("rings", [False, True], ids=["lines", "rings"])
+def test_more_than_there_is_room_for(rings):
+    """Grooves 250 times as wide as they are apart: those nearest stand for all, and their floor of small right angles
+    sends light back up."""
+    if rings:
+        made = grooves.Pattern([[[0.0, 0.0], [1.0, 0.0]]], V, rings=[(0.004, 5000)])
+    else:
+        made = grooves.Pattern([[[-10.0, -50.0], [-10.0, 50.0]]], V, repeats=[(0.004, 0.0, 5000)])
+    small = ([6.0, 0.0], [1e-2, 0.0], [0.0, 1e-2])
+    gold = optics.Conductor((0.14, 0.37, 1.44), (4.4, 2.77, 1.95))
+    ends = grooves.trace(made, *small, [0.0, 0.0, 1.0], gold, samples=64)
+    assert ends.left.all() and np.isfinite(ends.position).all()
+    assert (ends.met == 2).mean() > 0.9
+    np.testing.assert_allclose(ends.direction[ends.met == 2], [[0.0, 0.0, 1.0]] * int((ends.met == 2).sum()), atol=1e-3)
+
+
+def test_no_grooves_do_not_repeat():
+    assert grooves.Pattern([], [], repeats=[], rings=[]).count == 0
