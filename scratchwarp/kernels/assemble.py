@@ -108,6 +108,7 @@ def _glint_fields(plan: EffectPlan) -> dict[str, Any]:
     if not plan.on("diffraction"):
         return {}
     segments = plan.on("diffraction.segments")
+    crowds = segments and plan.on("diffraction.crowds")
     method = "closed-form" if plan.on("diffraction.closedForm") else "slices"
     ways = ("paper", "exact", "point")
     footprint = next((way for way in ways if plan.on(f"diffraction.{way}Footprint")), "gaussian")
@@ -115,8 +116,9 @@ def _glint_fields(plan: EffectPlan) -> dict[str, Any]:
         "glints": True,
         "glint_footprint": footprint,
         "glint_segments": segments,
-        "glint_lists": segments and plan.on("diffraction.lists"),
-        "glint_hierarchy": segments and plan.on("diffraction.hierarchy"),
+        "glint_lists": segments and plan.on("diffraction.lists") and not crowds,
+        "glint_hierarchy": crowds or segments and plan.on("diffraction.hierarchy"),
+        "glint_crowds": crowds,
         "glint_bands": plan.on("diffraction.bands"),
         "glint_gratings": plan.on("diffraction.bands") and plan.on("diffraction.coherent"),
         "glint_fringes": plan.on("diffraction.distantLookup"),
@@ -257,9 +259,10 @@ def assemble(
     waved = tuple(tuple(x.layer.label for x in w.layers) if w is not None else () for w in plan.waves)
     knobs = plan.settings.knobs
     sliced = sorted((turned(knobs, "wave") | turned(knobs, "glint")).items())
+    crowded = plan.effects["diffraction.crowds"].prims if key.glint_crowds else ()
     sparkle = parts.part(
         "glints",
-        (digest(scene.materials, key, waved, sliced), scene.curves, scene.meshes, scene.textures, placed)
+        (digest(scene.materials, key, waved, sliced, crowded), scene.curves, scene.meshes, scene.textures, placed)
         if key.glints
         else (),
         lambda: glints.pack(scene, plan, key, shape, device, progress),

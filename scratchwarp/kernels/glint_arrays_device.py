@@ -16,7 +16,9 @@ MOST_SLICES = wp.constant(16)
 @wp.struct
 class WaveMaterial:
     """A material whose scratches diffract. ``first``, ``count``: its wavelengths, the longest last; ``bands``: its
-    regular layers in ``GlintArrays.bands``, from ``first_band``."""
+    regular layers in ``GlintArrays.bands``, from ``first_band``; ``groups``: that its pieces are dealt into, a power of
+    two, in ``GlintArrays.bvh`` from ``first_group`` (0: it has none); ``strands``: of a footprint that are lit at most
+    (0: all)."""
 
     sigma: float  # coherence radius [um]
     first: int
@@ -26,6 +28,9 @@ class WaveMaterial:
     bands: int
     coherent: int  # its scratches interfere
     bin: float  # what a wavelength stands for in 1 / wavelength [1/um]
+    first_group: int
+    groups: int
+    strands: int
 
 
 @wp.struct

@@ -20,6 +20,7 @@ from ..scratches.generate import random_scratches
 from ..scratches.segments import SegmentSet, Stroke, build, surroundings
 from .geometry import PackedGeometry
 from .glint_arrays_device import BandData, GlintArrays, Spectrum, WaveLayer, WaveMaterial
+from .glint_crowds import Crowds
 from .glint_energy_device import BINS
 from .glint_fringes import fringes
 from .glint_maps import GlintMaps, directions
@@ -174,6 +175,7 @@ def pack(
     numbers = {(m, k, v): 0 for m, w in diffracting for k, x in enumerate(w.layers) for v in range(len(x.outlines))}
     numbers = {pair: number for number, pair in enumerate(numbers)}
     strokes = _strokes(scene, plan, key, shape, numbers)
+    crowds = Crowds(scene, plan, [m for m, _, _ in numbers]) if key.glint_crowds else None
     segments = None
     if key.glint_footprint in ("exact", "paper"):
         arrays.rules = rules((16,))
@@ -188,7 +190,8 @@ def pack(
         g = shape.arrays
         shown = progress if sum(len(s.curves.counts) for s in strokes) > SHOWN else None
         steps = (lambda done, total: shown(done, total, "scratches")) if shown else None
-        segments = build(strokes, g.points, g.uvs, g.dpdu, g.dpdv, shape.mesh, key.glint_hierarchy, device, steps)
+        deal = crowds.deal if crowds is not None else None
+        segments = build(strokes, g.points, g.uvs, g.dpdu, g.dpdv, shape.mesh, key.glint_hierarchy, device, steps, deal)
         if key.glint_lists:
             starts, around, reach = surroundings(g.points.numpy().reshape(-1, 3, 3))
             arrays.around_starts = wp.array(starts, dtype=int, device=device)
@@ -216,6 +219,8 @@ def pack(
         record.bin = bin_width(w.wave)
         record.bands = sum(material == m for material, _ in bands)
         record.first_band = next((n for n, (material, _) in enumerate(bands) if material == m), 0)
+        if crowds is not None:
+            record.first_group, record.groups, record.strands = crowds.of(m)
         waves.append(record)
         lams.append(at)
         colors.append(weights)

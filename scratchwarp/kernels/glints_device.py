@@ -16,6 +16,7 @@ from ..scratches.segments_device import Plane, plane_of
 from .geometry_device import Geometry, Surface
 from .glint_arrays_device import GlintArrays, Glints, Strand
 from .glint_bands_device import band_strand
+from .glint_crowds_device import make_crowds
 from .glint_energy_device import BINS, COLUMNS, balance_of, take_all, take_share
 from .glint_lights_device import KNOWN, make_strand_light
 from .glint_maps_device import mask_at, turned_band
@@ -149,6 +150,8 @@ def make_glints(key: KernelKey, transmittance):
                         r.high = half - along
         return r
 
+    crowd_light = make_crowds(key, strand_of, strand_light) if key.glint_crowds else None
+
     @wp.func
     def glints(
         a: GlintArrays,
@@ -245,7 +248,7 @@ def make_glints(key: KernelKey, transmittance):
                                         )
                                         total += wp.vec3(lit[0], lit[1], lit[2])
                                         r.rays += lit[3]
-            if wp.static(key.glint_hierarchy):
+            if wp.static(key.glint_hierarchy and not key.glint_crowds):
                 if not listed and a.bvh != wp.uint64(0):
                     query = wp.bvh_query_aabb(a.bvh, s.p - reach, s.p + reach)
                     other = int(0)
@@ -287,6 +290,22 @@ def make_glints(key: KernelKey, transmittance):
                                     )
                                     total += wp.vec3(lit[0], lit[1], lit[2])
                                     r.rays += lit[3]
+            if wp.static(key.glint_crowds):
+                if wp.static(not key.glint_pairs):
+                    mates = wp.zeros(shape=1, dtype=Strand)
+                crowd = crowd_light(
+                    a, lights, g, arrays, s, frame.n, p, wo, step_x, step_y, reach, closeness, known, covered, taken,
+                    mates, index, dimension, seed,
+                )  # fmt: skip
+                total += crowd.radiance
+                r.rays += crowd.rays
+                if wp.static(key.glint_paths):
+                    drawn = crowd.drawn
+                    drawn_area = crowd.drawn_area
+                    area_sum = crowd.area_sum
+                if wp.static(key.glint_pairs):
+                    met = crowd.met
+                    widest = crowd.widest
             if wp.static(key.glint_pairs):
                 if wave.coherent == 1:
                     take_all(covered, taken)

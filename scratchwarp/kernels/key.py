@@ -24,7 +24,7 @@ class KernelKey:
         responses: kinds of response over solid angle, of scratches or bases.
         glints: some scratches diffract. glint_segments: explicit ones; glint_bands: regular patterns.
         glint_lists, glint_hierarchy: pieces are found by triangle, in a hierarchy, or either by what a footprint needs.
-        glint_gratings: some of them show orders.
+        glint_crowds: of some footprints' scratches some are drawn for all. glint_gratings: some of them show orders.
         glint_areas: under lights with an extent. glint_method: slices, closed-form or paper.
         glint_footprint: gaussian, exact, paper or point.
         glint_lookup, glint_fringes: colours under wide lights, under lights without extent, are looked up.
@@ -68,6 +68,7 @@ class KernelKey:
     glint_segments: bool = False
     glint_lists: bool = False
     glint_hierarchy: bool = False
+    glint_crowds: bool = False
     glint_bands: bool = False
     glint_gratings: bool = False
     glint_areas: bool = False

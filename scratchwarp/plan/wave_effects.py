@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..scene import Layer, Scene, Settings
+from .crowds import crowded, crowds, lit
 from .waves import REGULAR, is_grating, looks_up, looks_up_points
 
 # circles, spirals and curves go their own way
@@ -73,6 +74,18 @@ def _lists(f: Any) -> Answer:
 def _hierarchy(f: Any) -> Answer:
     found = _segments(f)
     return found[0], "pieces in a hierarchy where lists do not do" if found[0] else "nothing to find", found[2]
+
+
+def _crowds(f: Any) -> Answer:
+    if not _segments(f)[0]:
+        return False, "nothing to find", ()
+    counts = crowds(f.scene, f.waves, *footprint_and_triangle(f.scene, f.settings, f.waves))
+    found = [m.path for m, count in zip(f.scene.materials, counts, strict=False) if crowded(count, f.settings)]
+    held, most = f"about {max(counts, default=0.0):.2g} scratches under a footprint", lit(f.settings.knobs)
+    if found:
+        drawn = f"{most} of them are drawn for each sample" if most else "all of them are summed, as asked for"
+        return True, f"{held}: {drawn}", tuple(found)
+    return False, f"{held}, few enough to sum", ()
 
 
 def _bands(f: Any) -> Answer:
@@ -147,6 +160,7 @@ WAVE_EFFECTS: dict[str, Callable[[Any], Answer]] = {
     "diffraction.segments": _segments,
     "diffraction.lists": _lists,
     "diffraction.hierarchy": _hierarchy,
+    "diffraction.crowds": _crowds,
     "diffraction.bands": _bands,
     "diffraction.coherent": _coherent,
     "diffraction.pairs": _pairs,

@@ -207,6 +207,7 @@ def build(
     with_bvh: bool = True,
     device: str = "cpu",
     progress: Callable[[int, int], None] | None = None,
+    groups: Callable[[Array], Array] | None = None,
 ) -> SegmentSet:
     """Lay scratches on triangles and cut them there.
 
@@ -216,7 +217,8 @@ def build(
     Args:
         points, uvs: corners of all triangles, dpdu, dpdv: of each triangle (arrays of ``kernels.geometry``).
         mesh: over the same triangles. with_bvh: whether to build a hierarchy over the pieces.
-        progress: called with (done, total) as work proceeds.
+        progress: called with (done, total) as work proceeds. groups: from the layer number of each piece to the group
+        of the hierarchy that it is in; None: there are no groups.
 
     Raises ValueError where that would be more than ``MOST_PIECES`` pieces.
     """
@@ -253,7 +255,8 @@ def build(
         lower: Any = wp.empty(count, dtype=wp.vec3, device=device)
         upper: Any = wp.empty(count, dtype=wp.vec3, device=device)
         wp.launch(bounds, count, inputs=[segments, points], outputs=[lower, upper], device=device)
-        hierarchy = wp.Bvh(lower, upper)
+        dealt: Any = wp.array(groups(held["layer"]), dtype=int, device=device) if groups is not None else None
+        hierarchy = wp.Bvh(lower, upper, groups=dealt)
     done(total - left[0])
     return SegmentSet(segments, wp.array(starts, dtype=int, device=device), count, hierarchy)
 

@@ -14,7 +14,6 @@ ONCE = {
     44: "a million grooves were laid out before they were counted",
     310: "a camera whose far plane is a millimetre away had no matrix of depths",
     1365: "a shape's displayColor was a file",
-    547: "more pieces of scratches than memory holds were laid out before they were counted",
     1404: "a shape's displayColor was one number",
     2057: "a layer of grooves had curves without points",
 }

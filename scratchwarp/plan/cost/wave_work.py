@@ -12,7 +12,6 @@ from ...scene import (
     DistantLight,
     DomeLight,
     Instance,
-    Layer,
     Light,
     MeshLight,
     RectLight,
@@ -20,13 +19,12 @@ from ...scene import (
     SphereLight,
 )
 from ..choice import EffectPlan
+from ..crowds import SEEN, STRAY, laid, lit, under
 from ..knobs import value
 from ..wave_effects import footprint_and_triangle
 from .footprints import footprints
 
 Units = dict[tuple[str, str], float]
-WIDE = 2.6
-"""Widths of a footprint over which its Gaussian is looked at."""
 SLACK = 0.03
 """About how far [rad] a lobe reaches where surfaces bend."""
 AROUND = 13.0
@@ -45,7 +43,7 @@ def wave_units(scene: Scene, plan: EffectPlan, shares: Sequence[float]) -> Units
         return found
     prints = footprints(scene, plan.size, plan.settings.spp or 1)
     triangle = 1e6 * footprint_and_triangle(scene, plan.settings, plan.waves)[1]
-    lights = _lights(scene, plan)
+    lights, most = _lights(scene, plan), lit(plan.settings.knobs)
 
     def add(effect: str, unit: str, count: float) -> None:
         if count > 0.0:
@@ -54,15 +52,18 @@ def wave_units(scene: Scene, plan: EffectPlan, shares: Sequence[float]) -> Units
     for number, (share, own) in enumerate(zip(shares, plan.waves, strict=False)):
         for p in own.layers if own is not None and share > 0.0 else ():
             strands = 2.0 if p.layer.distribution == "crosshatch" else 1.0
-            if p.layer.distribution in ("random", "worley", "curves"):
+            if p.layer.distribution in STRAY:
                 dense, length = laid(scene, number, p.layer)
-                reach, side = WIDE * prints[number].across, 0.6 * triangle
+                side = 0.6 * triangle
                 piece = min(length, side)  # triangles cut scratches
-                strands = dense * length * reach * (1.0 + 0.6 * reach / max(piece, 1e-12))
+                strands = under(dense, length, prints[number].across, triangle)
                 if plan.on("diffraction.lists") and 4.0 * prints[number].across <= triangle:
                     near = AROUND * dense * length * side * (1.0 + side / max(piece, 1e-12))
                 else:
                     near = 1.5 * strands
+                if plan.on("diffraction.crowds") and most > 0:
+                    near = min(near, 1.5 * SEEN * most)
+                    strands = min(strands, float(most))
                 add("diffraction.segments", "diffraction.pieces", share * near)
                 add("diffraction.segments", "diffraction.found", share)
                 add("diffraction.segments", "diffraction.strands", share * strands)
@@ -74,26 +75,6 @@ def wave_units(scene: Scene, plan: EffectPlan, shares: Sequence[float]) -> Units
                 add("diffraction.areaLights" if unit != "diffraction.points" else "diffraction", unit,
                     share * strands * count)  # fmt: skip
     return found
-
-
-def laid(scene: Scene, number: int, layer: Layer) -> tuple[float, float]:
-    """(scratches a square micrometre, their length [um]) of a layer of a material."""
-    if layer.distribution != "curves":
-        return (layer.density * 1e-6 if layer.density > 0.0 else 1e-4), layer.length
-    area = 0.0
-    for instance in scene.instances:
-        mesh = scene.meshes[instance.mesh]
-        if number in instance.materials and len(mesh.triangles):
-            corners = mesh.points[mesh.triangles] @ instance.transform[:3, :3].T
-            area += 0.5 * float(np.linalg.norm(np.cross(*np.moveaxis(np.diff(corners, axis=1), 1, 0)), axis=-1).sum())
-    side, strokes, whole = 1e6 * math.sqrt(max(area, 1e-20)), 0, 0.0
-    for record in (scene.curves[c] for c in layer.curves):
-        steps = np.linalg.norm(np.diff(record.points, axis=0), axis=1)
-        ends = np.cumsum(record.counts)[:-1] - 1
-        steps[ends[ends < len(steps)]] = 0.0
-        strokes += len(record.counts)
-        whole += float(steps.sum()) * (side if record.space == "uv" else 1e6)
-    return strokes / side**2, whole / max(strokes, 1)
 
 
 def _lights(scene: Scene, plan: EffectPlan) -> dict[str, float]:

@@ -43,6 +43,16 @@ KNOBS = (
         source=f"{_VELINOV}, Equations 15 and 16",
     ),
     Knob(
+        name="diffraction.strands",
+        values=(64, 256, 1024, 4096, "all"),
+        default=1024,
+        error="noise where footprints hold many more scratches: some are drawn for all",
+        sets="glint.strands",
+        effects=("diffraction.crowds",),
+        limits=(16, 1 << 20),
+        noise=True,
+    ),
+    Knob(
         name="diffraction.colors",
         values=("auto", "rgb", "lookup", "wavelengths"),
         default="auto",
