@@ -48,7 +48,8 @@ def test_those_drawn_are_on_average_all():
 def test_few_scratches_are_all_summed():
     """Near by each footprint holds few, whatever the plan expected of the whole image: not drawn from, the same sum."""
     scene = world(density=0.05)
-    films = [sw.render(scene, sw.make_plan(scene, settings(64, effects={"diffraction.crowds": on}))) for on in (False, True)]
+    plans = [sw.make_plan(scene, settings(64, effects={"diffraction.crowds": on})) for on in (False, True)]
+    films = [sw.render(scene, plan) for plan in plans]
     np.testing.assert_allclose(films[1]["color"], films[0]["color"], rtol=2e-4)
 
 

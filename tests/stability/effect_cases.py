@@ -271,7 +271,9 @@ CASES: dict[str, Case] = {
     "diffraction.segments": Case(waves(), waves(**HERE), grows=True),
     "diffraction.lists": Case(waves(), waves(), grows=True, where="", only_with={"spp": 64}),
     "diffraction.hierarchy": Case(waves(), waves(**HERE), grows=True),
-    "diffraction.crowds": Case(waves(density=1e-3), waves(density=1e-3), only_with={"knobs": {"diffraction.strands": 16}}),
+    "diffraction.crowds": Case(
+        waves(density=1e-3), waves(density=1e-3), only_with={"knobs": {"diffraction.strands": 16}}
+    ),
     "diffraction.bands": Case(waves(**HERE), world(lights=[SUN]), grows=True),
     "diffraction.coherent": Case(waves(Wave(samples=4, summation="coherent"), **HERE), waves(**HERE), grows=True),
     "diffraction.masks": Case(waves(mask_primvar="wear"), waves(), grows=True),

@@ -88,8 +88,9 @@ class Pattern:
                 raise ValueError(f"paths[{i}] must have shape [k, 2], got {list(p.shape)}")
         sections = self._sections(profiles, len(given))
         sizes = self._scales(scales, given)
-        told = repeats is not None and len(given) > 0
-        steps = numbers("repeats", repeats) if told else np.tile((0.0, 0.0, 1.0), (len(given), 1))
+        steps = np.tile((0.0, 0.0, 1.0), (len(given), 1))
+        if repeats is not None and given:
+            steps = numbers("repeats", repeats)
         around = list(rings) if rings is not None else [None] * len(given)
         if steps.shape != (len(given), 3) or len(around) != len(given):
             raise ValueError(f"repeats must have shape [{len(given)}, 3], rings one entry for each path")
