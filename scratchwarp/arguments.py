@@ -298,11 +298,12 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument(
         "--calibrate", action="store_true", help="measure instead what work costs on this machine, for all renders"
     )
-    made.add_argument("--budget", metavar="TIME", help="90s, 10m or 2h: search settings of several knobs, too [none]")
+    made.add_argument(
+        "--budget", metavar="TIME", help="90s, 10m or 2h: be done by then; first each knob alone, then several [none]"
+    )
     made.add_argument("--knobs", metavar="NAMES", default="", help="with commas [all that act on the stage]")
     made.add_argument("--repeats", type=int, default=3, metavar="N", help="rounds of all settings [3]")
     add_settings(made)
-    made.set_defaults(imageWidth=160)
 
     made = command("fit", "fit highlight stencils to a measured BRDF, written as a material", json_too=True)
     made.add_argument("measured", metavar="MEASURED", help="UTIA .bin, MERL .binary, RGL .bsdf, or a USD stage")

@@ -6,6 +6,9 @@ from collections.abc import Callable, Sequence
 from . import arguments
 from .arguments import UsageError
 
+WIDTHS = (160, 128, 96, 64, 48)
+"""Pixels that the image of a study is wide unless others are asked for; the later ones where a budget needs it."""
+
 
 def run(args: argparse.Namespace, warn: Callable[[Sequence[str]], None]) -> tuple[str, str]:
     """(what there is to say, the same as JSON) of a study or a calibration; UsageError on wrong usage."""
@@ -23,8 +26,10 @@ def run(args: argparse.Namespace, warn: Callable[[Sequence[str]], None]) -> tupl
     scene = sw.read(args.stage, **arguments.reading(args))
     warn(scene.warnings)
     args.kept = args.out
+    widths = () if args.imageWidth else WIDTHS
+    args.imageWidth = args.imageWidth or WIDTHS[0]
     settings = arguments.settings(args)
-    written = command.run(scene, names, args.repeats, settings, budget, args.out, args.quiet)
+    written = command.run(scene, names, args.repeats, settings, budget, args.out, args.quiet, widths)
     return written.text, written.json
 
 

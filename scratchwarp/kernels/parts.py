@@ -36,8 +36,8 @@ class Parts:
         """(sources, what was built from them) of a part; None before it is built."""
         return self._built.get(name)
 
-    def copy(self) -> "Parts":
-        """Another one that starts with what is built here."""
+    def copy(self, but: tuple[str, ...] = ()) -> "Parts":
+        """Another one that starts with what is built here, ``but`` for some parts."""
         other = Parts()
-        other._built = dict(self._built)
+        other._built = {name: part for name, part in self._built.items() if name not in but}
         return other

@@ -1,5 +1,6 @@
 """Which theta model a table needs: the cheapest whose largest albedo error is within what was asked for."""
 
+from functools import lru_cache
 from typing import Any
 
 from .. import profiles
@@ -7,6 +8,26 @@ from ..reflectance.profile_table import RENDERED, SUMMED
 
 # Largest error of a directional albedo where nothing else is asked for.
 DEFAULT_ERROR = 0.01
+
+
+class _Asked:
+    """A profile and its reflector: alike where the profile's token and the reflector are."""
+
+    def __init__(self, profile: profiles.Profile, fresnel: Any) -> None:
+        self.profile, self.fresnel = profile, fresnel
+        self._is = (profile.token, fresnel)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Asked) and self._is == other._is
+
+    def __hash__(self) -> int:
+        return hash(self._is)
+
+
+@lru_cache(maxsize=256)
+def _errors(asked: _Asked) -> dict[str, float]:
+    """Of every theta model; a stage that is planned again and again, with other knobs each time, asks once."""
+    return profiles.theta_model_errors(asked.profile, asked.fresnel)
 
 
 def theta_model(
@@ -19,7 +40,7 @@ def theta_model(
     """
     if fresnel is None:
         return "gamma", 0.0
-    errors = profiles.theta_model_errors(profile, fresnel)
+    errors = _errors(_Asked(profile, fresnel))
     bound = DEFAULT_ERROR if max_error is None else max_error
     names = SUMMED if summed else RENDERED
     name = next((name for name in names if errors[name] <= bound), names[-1])

@@ -1,6 +1,7 @@
 """One kernel over tiles of one film."""
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import warp as wp
@@ -56,6 +57,16 @@ def loaded(key: KernelKey, device: str, progress: Progress = silent) -> tuple[An
     if fresh:
         progress(1, 1, "compile")
     return kernel, fresh
+
+
+def compiled(key: KernelKey) -> bool:
+    """Whether a kernel is loaded, or lies in Warp's cache from an earlier process."""
+    from ..kernels.render_device import make_kernel
+
+    if key in _compiled:
+        return True
+    module: Any = make_kernel(key).module
+    return any(Path(wp.config.kernel_cache_dir).glob(f"wp_{module.name}_*/*.o"))
 
 
 def launcher(

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import warp as wp
 
-from ..kernels import assemble, kernel_key
+from ..kernels import Parts, assemble, kernel_key
 from ..plan import EffectPlan
+from ..profiles import Table
 from ..scene import Scene
 from ..scene.digest import digest
 from . import baked, develop
@@ -40,6 +41,8 @@ def render(
     farm: "Farm | None" = None,
     control: Control | None = None,
     snapshot: Callable[[Film], None] | None = None,
+    tables: dict[tuple[Any, ...], Table] | None = None,
+    parts: Parts | None = None,
 ) -> Film:
     """Render a planned scene.
 
@@ -52,6 +55,9 @@ def render(
         control: ends the render or asks for snapshots, from another thread or a signal handler.
         snapshot: is given the image as it is whenever ``control`` asks; pixels without samples are black and
             transparent.
+        tables: those of another render by ``identity``, which need not be simulated; replaced by those of this one.
+        parts: what was built for another render of this scene; what is the same is taken from there. Both without
+            ``farm``.
 
     With ``max_error``, samples are added until the error estimated from them is below it (see ``target``), and stats
     say what it came to.
@@ -69,18 +75,19 @@ def render(
     wp.init()
     clock, cpu = time.perf_counter(), time.process_time()
     bake = baked.find(scene.path)
-    tables, tables_simulated = simulate_tables(plan, threads, progress, bake, farm.tables if farm else None)
+    earlier = farm.tables if farm else tables
+    simulated_tables, tables_simulated = simulate_tables(plan, threads, progress, bake, earlier)
     simulated = time.perf_counter()
     key = kernel_key(scene, plan)
     about = described(scene, plan, key)
     if farm is None:
-        built = assemble(scene, plan, tables, device, progress=progress)
+        built = assemble(scene, plan, simulated_tables, device, parts, progress)
         kernel, fresh = loaded(key, device, progress)
         trace: Tracer = Threads(kernel, built, plan, device, control)
     else:
         # workers on this machine find the kernel compiled
         fresh = farm.local and loaded(key, device, progress)[1]
-        trace = farm.tracer(scene, plan, tables, key, device, control, digest(about))
+        trace = farm.tracer(scene, plan, simulated_tables, key, device, control, digest(about))
     compiled = time.perf_counter()
 
     x0, x1, y0, y1 = plan.window

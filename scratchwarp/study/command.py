@@ -1,6 +1,7 @@
 """A study from the command line: sweep, report, and what is printed of it."""
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -27,12 +28,12 @@ def run(
     budget: float | None,
     folder: str,
     quiet: bool = False,
+    widths: Sequence[int] = (),
 ) -> Written:
     """Sweep and write the report; arguments and errors as of ``sweep``."""
     with bar(quiet, Path(scene.path).name) as progress:
-        report = sweep(
-            scene, knobs, repeats=repeats, settings=settings, budget=budget, folder=folder, progress=progress
-        )
+        how: dict[str, Any] = {"settings": settings, "budget": budget, "folder": folder, "widths": widths}
+        report = sweep(scene, knobs, repeats=repeats, progress=progress, **how)
     page = report.write(folder)
     lines = [f"{row.seconds:9.3g} s  relMSE {row.error:<9.3g} {row.name}" for row in report.pareto()]
     return Written(page, "\n".join([*lines, str(page)]), json.dumps(report.record(), default=_plain))

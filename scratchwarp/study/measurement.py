@@ -10,7 +10,7 @@ from typing import Any
 from ..scene.knob import Value
 from ..whole import whole
 
-PARTS = ("plan", "simulate", "trace")
+PARTS = ("plan", "simulate", "build", "trace")
 
 
 @dataclass(frozen=True)
@@ -54,11 +54,13 @@ def setting_name(knobs: Mapping[str, Value]) -> str:
 class Notebook:
     """Measurements in a file of lines, kept as they come. ``key``: of the study; a file of another one is not read.
 
-    Without a folder everything stays in memory.
+    ``chosen``: what else the first line says of it, and what a file must say to be read. Without a folder everything
+    stays in memory.
     """
 
-    def __init__(self, folder: Path | None, key: str) -> None:
+    def __init__(self, folder: Path | None, key: str, chosen: Mapping[str, Any] | None = None) -> None:
         self.rows: list[Measurement] = []
+        self.chosen = dict(chosen or {})
         self.file = folder / "measurements.jsonl" if folder is not None else None
         self.resumed = 0
         if self.file is None:
@@ -68,12 +70,12 @@ class Notebook:
         except OSError as error:
             raise OSError(f"{folder}: no folder can be made there ({error.strerror}); choose another") from error
         lines = self.file.read_text(encoding="utf-8").splitlines() if self.file.is_file() else []
-        if lines and _loaded(lines[0]) == {"study": key}:
+        if lines and _loaded(lines[0]) == json.loads(json.dumps({"study": key, **self.chosen})):
             known = (_loaded(line) for line in lines[1:])
             self.rows = [Measurement(**row) for row in known if row is not None]
             self.resumed = len(self.rows)
         with whole(self.file) as draft:
-            rows = [{"study": key}, *(asdict(row) for row in self.rows)]
+            rows = [{"study": key, **self.chosen}, *(asdict(row) for row in self.rows)]
             draft.write_text("".join(json.dumps(row) + "\n" for row in rows), encoding="utf-8")
 
     def add(self, row: Measurement) -> None:
@@ -88,6 +90,16 @@ class Notebook:
     def has(self, knobs: Mapping[str, Value], repeat: int) -> bool:
         """Whether a rendering is there already."""
         return any(row.repeat == repeat and dict(row.knobs) == dict(knobs) for row in self.rows)
+
+
+def header(folder: Path | None) -> dict[str, Any] | None:
+    """What the first line of a folder's notebook says; None without one."""
+    file = folder / "measurements.jsonl" if folder is not None else None
+    if file is None or not file.is_file():
+        return None
+    with file.open(encoding="utf-8") as stream:
+        found = _loaded(stream.readline())
+    return found if isinstance(found, dict) else None
 
 
 def _loaded(line: str) -> Any:

@@ -8,23 +8,25 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..plan import EffectPlan
 from ..profiles import Table
 from ..profiles.table import bin_weights
-from ..render.tables import simulate_tables
 
 
-def tables_of(plan: EffectPlan) -> list[Table]:
-    """The plan's tables, simulated."""
-    return simulate_tables(plan, plan.settings.threads or 1)[0]
+def slices_of(tables: Sequence[Table]) -> list[np.ndarray]:
+    """What of tables is compared: each at theta = 0, mean over colours, float32 [bins, bins]."""
+    slices = [np.asarray(table.slice(0.0), np.float32) for table in tables]
+    return [values.mean(axis=-1) if values.ndim == 3 else values for values in slices]
 
 
-def table_error(found: Sequence[Table], best: Sequence[Table]) -> float | None:
-    """Mean relative difference of tables; None where there are none or their bins have no common refinement."""
+def table_error(found: Sequence[np.ndarray], best: Sequence[np.ndarray]) -> float | None:
+    """Mean relative difference of tables by their slices; None where there are none, others or their bins have no
+    common refinement."""
     errors = []
+    if len(found) != len(best):
+        return None
     for one, reference in zip(found, best, strict=True):
-        bins = max(one.resolution, reference.resolution)
-        if bins % one.resolution or bins % reference.resolution:
+        bins = max(len(one), len(reference))
+        if bins % len(one) or bins % len(reference):
             return None
         a, b = _refined(one, bins), _refined(reference, bins)
         weights = np.outer(bin_weights(bins), bin_weights(bins))
@@ -32,8 +34,6 @@ def table_error(found: Sequence[Table], best: Sequence[Table]) -> float | None:
     return float(np.mean(errors)) if errors else None
 
 
-def _refined(table: Table, bins: int) -> np.ndarray:
-    values = np.asarray(table.slice(0.0), np.float64)
-    values = values.mean(axis=-1) if values.ndim == 3 else values
-    times = bins // table.resolution
-    return values.repeat(times, 0).repeat(times, 1)
+def _refined(values: np.ndarray, bins: int) -> np.ndarray:
+    times = bins // len(values)
+    return values.astype(np.float64).repeat(times, 0).repeat(times, 1)

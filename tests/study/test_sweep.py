@@ -87,7 +87,7 @@ def test_an_interrupted_study_goes_on(done, tmp_path, monkeypatch):
     _, folder = done
     lines = (folder / "measurements.jsonl").read_text().splitlines()
     (tmp_path / "measurements.jsonl").write_text("\n".join([*lines[:-1], lines[-1][:20]]))
-    reference = next((folder / ".images").glob("*-reference.npy"))
+    reference = next((folder / ".images").glob("*-reference.npz"))
     (tmp_path / reference.name).write_bytes(reference.read_bytes())
     measured = []
     add = Notebook.add
