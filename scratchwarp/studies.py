@@ -1,6 +1,7 @@
 """What the command ``study`` does: a sweep and its report, or this machine's prices."""
 
 import argparse
+import time
 from collections.abc import Callable, Sequence
 
 from . import arguments
@@ -12,6 +13,7 @@ WIDTHS = (160, 128, 96, 64, 48)
 
 def run(args: argparse.Namespace, warn: Callable[[Sequence[str]], None]) -> tuple[str, str]:
     """(what there is to say, the same as JSON) of a study or a calibration; UsageError on wrong usage."""
+    begun = time.perf_counter()
     import json
 
     import scratchwarp as sw
@@ -29,7 +31,7 @@ def run(args: argparse.Namespace, warn: Callable[[Sequence[str]], None]) -> tupl
     widths = () if args.imageWidth else WIDTHS
     args.imageWidth = args.imageWidth or WIDTHS[0]
     settings = arguments.settings(args)
-    written = command.run(scene, names, args.repeats, settings, budget, args.out, args.quiet, widths)
+    written = command.run(scene, names, args.repeats, settings, budget, args.out, args.quiet, widths, begun)
     return written.text, written.json
 
 

@@ -66,7 +66,7 @@ def compiled(key: KernelKey) -> bool:
     if key in _compiled:
         return True
     module: Any = make_kernel(key).module
-    return any(Path(wp.config.kernel_cache_dir).glob(f"wp_{module.name}_*/*.o"))
+    return any(Path(wp.config.kernel_cache_dir or "").glob(f"wp_{module.name}_*/*.o"))
 
 
 def launcher(

@@ -7,11 +7,18 @@ from collections.abc import Mapping, Sequence
 from .report import Row
 
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7a5195", "#8c564b", "#444444", "#a0a000")
-_WIDE, _HIGH, _LEFT, _TOP, _RIGHT, _LOW = 760, 420, 70, 14, 16, 46
+_WIDE, _HIGH, _LEFT, _TOP, _RIGHT, _LOW = 760, 420, 74, 14, 16, 46
+_COLUMNS = 3
 
 
-def chart(lines: Mapping[str, Sequence[Row]], dots: Sequence[Row] = (), front: Sequence[Row] = ()) -> str:
-    """One line for each knob by its rows, grey dots for other settings, the front as a dashed stair.
+def chart(
+    lines: Mapping[str, Sequence[Row]],
+    dots: Sequence[Row] = (),
+    front: Sequence[Row] = (),
+    floor: float | None = None,
+) -> str:
+    """One line for each knob by its rows, grey dots for other settings, the front as a dashed stair, a cross at the
+    defaults and a dotted line at the ``floor``, the noise of the reference.
 
     Hovering over a point names it. Errors of 0 are drawn at the lower edge.
     """
@@ -19,17 +26,21 @@ def chart(lines: Mapping[str, Sequence[Row]], dots: Sequence[Row] = (), front: S
     errors = [row.error for row in every if row.error > 0.0] or [1.0]
     seconds = [max(row.seconds, 1e-6) for row in every] or [1.0]
     x0, x1 = _span(min(seconds), max(seconds))
-    y0, y1 = _span(min(errors), max(errors))
+    y0, y1 = _span(min(*errors, *([floor] if floor else []), max(errors)), max(errors))
 
     def x(row: Row) -> float:
         share = (math.log10(max(row.seconds, 1e-6)) - x0) / (x1 - x0)
         return _LEFT + (_WIDE - _LEFT - _RIGHT) * share
 
-    def y(row: Row) -> float:
-        share = (math.log10(max(row.error, 10**y0)) - y0) / (y1 - y0)
+    def level(error: float) -> float:
+        share = (math.log10(max(error, 10**y0)) - y0) / (y1 - y0)
         return _HIGH - _LOW - (_HIGH - _LOW - _TOP) * share
 
-    height = _HIGH + 20 * math.ceil(len(lines) / 3) + 10
+    def y(row: Row) -> float:
+        return level(row.error)
+
+    legend = [*lines, *(["several knobs"] if dots else []), "front", "defaults"]
+    height = _HIGH + 20 * math.ceil(len(legend) / _COLUMNS) + 10
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {_WIDE} {height}" role="img" '
         'aria-label="error against seconds">',
@@ -48,6 +59,11 @@ def chart(lines: Mapping[str, Sequence[Row]], dots: Sequence[Row] = (), front: S
     middle = (_HIGH - _LOW + _TOP) / 2
     parts.append(f'<text x="{(_WIDE + _LEFT) / 2}" y="{_HIGH - 8}" text-anchor="middle">seconds</text>')
     parts.append(f'<text transform="translate(14 {middle}) rotate(-90)" text-anchor="middle">error (relMSE)</text>')
+    if floor:
+        at = level(floor)
+        parts.append(f'<path d="M{_LEFT} {at:.1f}H{_WIDE - _RIGHT}" stroke="#b00" stroke-dasharray="2 4"/>')
+        parts.append(f'<text x="{_WIDE - _RIGHT - 4}" y="{at - 5:.1f}" text-anchor="end" fill="#b00">'
+                     "noise of the reference</text>")  # fmt: skip
     if front:
         ordered = sorted(front, key=lambda row: row.seconds)
         path = f"M{x(ordered[0]):.1f} {_TOP}V{y(ordered[0]):.1f}"
@@ -55,15 +71,36 @@ def chart(lines: Mapping[str, Sequence[Row]], dots: Sequence[Row] = (), front: S
         parts.append(f'<path d="{path}" fill="none" stroke="#222" stroke-dasharray="5 4"/>')
         parts += [f'<circle cx="{x(r):.1f}" cy="{y(r):.1f}" r="8" fill="none" stroke="#222"/>' for r in ordered]
     parts += [_dot(x(row), y(row), "#999", row) for row in dots]
-    for number, (name, rows) in enumerate(lines.items()):
+    for number, rows in enumerate(lines.values()):
         color = COLORS[number % len(COLORS)]
         points = " ".join(f"{x(row):.1f},{y(row):.1f}" for row in rows)
         parts.append(f'<polyline points="{points}" fill="none" stroke="{color}" stroke-width="1.6"/>')
         parts += [_dot(x(row), y(row), color, row) for row in rows]
-        left, below = _LEFT + 230 * (number % 3), _HIGH + 14 + 20 * (number // 3)
-        parts.append(f'<path d="M{left} {below - 4}h22" stroke="{color}" stroke-width="3"/>')
+    base = next((row for row in every if not row.knobs), None)
+    if base is not None:
+        parts.append(f'<path d="{_cross(x(base), y(base), 7)}" stroke="#000" stroke-width="2"/>')
+    for number, name in enumerate(legend):
+        left, below = _LEFT + 225 * (number % _COLUMNS), _HIGH + 14 + 20 * (number // _COLUMNS)
+        parts.append(_key(name, COLORS[number % len(COLORS)] if number < len(lines) else "", left, below))
         parts.append(f'<text x="{left + 28}" y="{below}">{html.escape(name)}</text>')
     return "\n".join([*parts, "</g>", "</svg>"])
+
+
+def _key(name: str, color: str, left: float, below: float) -> str:
+    """What a legend's text stands beside."""
+    at = below - 4
+    if color:
+        return f'<path d="M{left} {at}h22" stroke="{color}" stroke-width="3"/>'
+    if name == "front":
+        dashes = f'<path d="M{left} {at}h22" stroke="#222" stroke-dasharray="5 4"/>'
+        return f'{dashes}<circle cx="{left + 11}" cy="{at}" r="6" fill="none" stroke="#222"/>'
+    if name == "defaults":
+        return f'<path d="{_cross(left + 11, at, 6)}" stroke="#000" stroke-width="2"/>'
+    return f'<circle cx="{left + 11}" cy="{at}" r="4" fill="#999"/>'
+
+
+def _cross(x: float, y: float, arm: float) -> str:
+    return f"M{x - arm:.1f} {y:.1f}h{2 * arm}M{x:.1f} {y - arm:.1f}v{2 * arm}"
 
 
 def _dot(x: float, y: float, color: str, row: Row) -> str:

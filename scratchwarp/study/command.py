@@ -29,11 +29,12 @@ def run(
     folder: str,
     quiet: bool = False,
     widths: Sequence[int] = (),
+    begun: float | None = None,
 ) -> Written:
     """Sweep and write the report; arguments and errors as of ``sweep``."""
     with bar(quiet, Path(scene.path).name) as progress:
         how: dict[str, Any] = {"settings": settings, "budget": budget, "folder": folder, "widths": widths}
-        report = sweep(scene, knobs, repeats=repeats, progress=progress, **how)
+        report = sweep(scene, knobs, repeats=repeats, progress=progress, begun=begun, **how)
     page = report.write(folder)
     lines = [f"{row.seconds:9.3g} s  relMSE {row.error:<9.3g} {row.name}" for row in report.pareto()]
     return Written(page, "\n".join([*lines, str(page)]), json.dumps(report.record(), default=_plain))

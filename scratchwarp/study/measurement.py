@@ -23,7 +23,7 @@ class Measurement:
         base: seconds of the defaults in the same round.
         error: relMSE against the reference. bias: against the knob's own reference value with the same samples, None
             where several are turned. flip: None where it is not installed. table: error of the tables themselves, where
-            only they are turned (see ``table_error``).
+            only they are turned (see ``table_error``). doubt: standard error of ``error``, from its spread over pixels.
     """
 
     knobs: Mapping[str, Value]
@@ -35,6 +35,7 @@ class Measurement:
     flip: float | None = None
     seed: int = field(default=0)
     table: float | None = None
+    doubt: float = 0.0
 
     @property
     def total(self) -> float:

@@ -26,6 +26,12 @@ def rel_mse(found: np.ndarray, reference: np.ndarray) -> float:
     return float((off.mean(axis=-1) * weights(reference)).mean())
 
 
+def uncertainty(found: np.ndarray, reference: np.ndarray) -> float:
+    """Standard error of ``rel_mse`` as a mean over pixels: great where few of them carry most of it."""
+    off = ((np.asarray(found, np.float64) - reference) ** 2).mean(axis=-1) * weights(reference)
+    return float(off.std() / np.sqrt(off.size))
+
+
 def shown(image: np.ndarray) -> np.ndarray:
     """Linear Rec.709 as sRGB in [0, 1], what is brighter cut off."""
     x = np.clip(np.asarray(image, np.float32), 0.0, 1.0)

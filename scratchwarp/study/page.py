@@ -2,19 +2,22 @@
 
 import base64
 import html
-import tempfile
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 
-from .. import image
+from ..image import quick
 from ..plan.knobs import KNOBS
 from .chart import chart
+from .measurement import PARTS
 from .report import Report, Row, machine
 
 DIFFERENCE = 4.0
 """Differences are shown so many times brighter."""
+MOST = 6
+"""Lines of one plot."""
 PAPERS = (
     "B. Raymond, G. Guennebaud, P. Barla: Multi-Scale Rendering of Scratched Materials using a Structured SV-BRDF "
     "Model. ACM Transactions on Graphics 35 (4), 2016.",
@@ -33,9 +36,12 @@ table { border-collapse: collapse; margin: 1rem 0; font-size: .9rem; }
 th, td { padding: .2rem .7rem; text-align: right; border-bottom: 1px solid #ddd; white-space: nowrap; }
 th:first-child, td:first-child { text-align: left; white-space: normal; }
 tr.front td { font-weight: 700; }
+.note { border-left: .25rem solid #d55e00; padding-left: .7rem; }
+.covered { color: #888; font-weight: 400; }
 .row { display: flex; flex-wrap: wrap; gap: .6rem; }
-figure { margin: 0; width: 10.5rem; } figure img { width: 100%; display: block; image-rendering: pixelated; }
+figure { margin: 0; width: 11.5rem; } figure img { width: 100%; display: block; image-rendering: pixelated; }
 figcaption { color: #555; font-size: .8rem; }
+.large figure { width: 18rem; }
 svg { max-width: 52rem; width: 100%; }
 .wide { overflow-x: auto; }
 """
@@ -47,6 +53,7 @@ def page(report: Report) -> str:
     names = list(report.about["defaults"])
     lines = {name: rows for name in names if len(rows := report.knob_rows(name)) > 1}
     joint = [row for row in report.rows if len(row.knobs) > 1]
+    seeds = about["reference"].get("seeds", [])
     says = [
         ("Stage", about["stage"]),
         ("Image", f"{about['size'][0]} x {about['size'][1]} pixels"),
@@ -54,47 +61,52 @@ def page(report: Report) -> str:
         ("Versions", about["versions"]),
         ("Threads", about["threads"]),
         ("Seeds", ", ".join(map(str, about["seeds"]))),
-        ("Reference", ", ".join(f"{n}={v}" for n, v in about["reference"].items())),
+        ("Reference", ", ".join(f"{n}={v}" for n, v in about["reference"].items() if n != "seeds")
+         + (f" (seeds {', '.join(map(str, seeds))})" if seeds else "")),
         ("Defaults", ", ".join(f"{n}={v}" for n, v in about["defaults"].items())),
-        ("Study took", f"{about['seconds']:.0f} s"),
+        ("Study took", f"{about['seconds']:.0f} s" + (f" of {b:.0f} s" if (b := about.get("budget")) else "")),
         ("Left out for lack of time", f"{about.get('left', 0)} settings"),
         ("On", ", ".join(about["effects"])),
-    ]
+    ]  # fmt: skip
     facts = "".join(f"<tr><td>{html.escape(n)}</td><td style='text-align:left;white-space:normal'>"
                     f"{html.escape(str(v))}</td></tr>" for n, v in says)  # fmt: skip
-    told = [row for row in report.rows if len(row.knobs) < 2 or row.front]
+    told = [row for row in report.sorted_rows() if len(row.knobs) < 2 or row.front]
     more = len(report.rows) - len(told)
     others = f"<p>{more} settings of several knobs off the front are in report.csv.</p>" if more else ""
     strips = "".join(_strip(report, name, rows) for name, rows in lines.items())
     papers = "".join(f"<li>{html.escape(paper)}</li>" for paper in PAPERS)
-    reference = _figure(report.reference, "reference")
+    pictures = _figure(report.reference, "reference")
+    if "defaults" in report.images:
+        pictures += _figure(report.images["defaults"], "defaults")
     return f"""<!doctype html>
 <html lang="en">
 <head><meta charset="utf-8"><title>What accuracy costs: {html.escape(str(about["stage"]))}</title>
 <style>{_STYLE}</style></head>
 <body>
 <h1>What accuracy costs: {html.escape(Path(str(about["stage"])).name)}</h1>
-<div class="row">{reference}</div>
+<div class="row large">{pictures}</div>
+{_notes(report)}
 <h2>Error against time</h2>
 <p>Each line turns one knob while the others stay at their defaults; grey dots turn several. Circles and the dashed
 stair mark the front: nothing that was measured is both faster and closer to the reference. Further left is faster,
 further down is closer; a line that falls steeply buys accuracy cheaply, a flat one costs time for nothing. Point at a
 dot to see what it is.</p>
-{chart(lines, joint, report.pareto())}
+{_charts(report, lines, joint)}
 <h2>The front</h2>
-{_table(report.pareto())}
+{_table(report, report.pareto())}
 <h2>Knob by knob</h2>
 <p>Above the image of each value, below it how far it is from the reference, {DIFFERENCE:g} times as bright.</p>
 {strips}
 <h2>Settings</h2>
-<p>Seconds are those of planning, simulating tables and tracing; compiling, which is done once, stands by itself. Rounds
-render every setting in turns: a setting's seconds are its ratio to the defaults of the same round, times the defaults'
-median, so that a slow moment of the machine does not count; the range is over rounds. relMSE is the mean over pixels of
-the squared difference over the squared luminance of the reference (plus a hundredth of its squared mean). Bias is the
-same against the knob's own reference value with the same samples: noise cancels, and what is left is what the knob
-does. Tables is the share of the light that tables themselves send elsewhere, against tables at the reference values of
-all knobs. FLIP is the difference seen when flipping between two images, 0 to 1.</p>
-{_table(told)}{others}
+<p>Seconds are those of planning, simulating tables, building data for the device and tracing, as if each setting were
+rendered alone with what profiles need known; compiling, which is done once, stands by itself. Rounds render every
+setting in turns: a setting's seconds are its ratio to the defaults of the same round, times the defaults' median, so
+that a slow moment of the machine does not count; the range is over rounds. relMSE is the mean over pixels of the
+squared difference over the squared luminance of the reference (plus a hundredth of its squared mean). Bias is the same
+against the knob's value in the reference with the same samples: noise cancels, and what is left is what the knob does.
+Tables is the share of the light that tables themselves send elsewhere, against those of the reference. FLIP is the
+difference seen when flipping between two images, 0 to 1. The front is in bold.</p>
+{_table(report, told)}{others}
 <h2>How it was measured</h2>
 <table>{facts}</table>
 <h2>Sources</h2>
@@ -104,19 +116,62 @@ all knobs. FLIP is the difference seen when flipping between two images, 0 to 1.
 """
 
 
-def _table(rows: Sequence[Row]) -> str:
-    timed = ("Setting", "Seconds", "Range", "Plan", "Simulate", "Trace", "Compile")
+def _notes(report: Report) -> str:
+    """What must be known of the reference, and of what is not there."""
+    about, said = report.about, []
+    if report.floor is not None:
+        said.append(
+            f"The reference has an error of its own: relMSE {report.floor:.2g}, the noise of its samples, measured by "
+            "its two halves. Errors below twice that, in grey with the mark *, say nothing of the setting."
+        )
+    shrunk = about.get("shrunk", {})
+    if shrunk:
+        changed = ", ".join(f"{n} {new} in place of {old}" for n, (old, new) in shrunk.items())
+        said.append(
+            f"For the budget of {about['budget']:.0f} s the reference was made cheaper: {changed}. Dearer values of "
+            "these knobs are left out, and what they would change is in no error here; a longer budget has them."
+        )
+    if about.get("unmeasured"):
+        said.append(f"Not measured for lack of time: {', '.join(about['unmeasured'])}. The same command with a longer "
+                    "budget, or again with the same one, goes on.")  # fmt: skip
+    return "".join(f"<p class='note'>{html.escape(text)}</p>" for text in said)
+
+
+def _charts(report: Report, lines: Mapping[str, Sequence[Row]], joint: Sequence[Row]) -> str:
+    """Plots of at most ``MOST`` knobs each, those first that change most."""
+
+    def reach(name: str) -> float:
+        errors = [max(row.error, 1e-12) for row in lines[name]]
+        seconds = [max(row.seconds, 1e-6) for row in lines[name]]
+        return math.log(max(errors) / min(errors)) + math.log(max(seconds) / min(seconds))
+
+    order = sorted(lines, key=reach, reverse=True)
+    drawn = []
+    for start in range(0, max(len(order), 1), MOST):
+        names = [name for name in lines if name in order[start : start + MOST]]
+        if start:
+            drawn.append("<h3>Knobs that change less here</h3>")
+        own = {name: lines[name] for name in names}
+        drawn.append(chart(own, () if start else joint, () if start else report.pareto(), report.floor))
+    return "".join(drawn)
+
+
+def _table(report: Report, rows: Sequence[Row]) -> str:
+    timed = ("Setting", "Seconds", "Range [s]", "Plan [s]", "Simulate [s]", "Build [s]", "Trace [s]", "Compile [s]")
     head = (*timed, "relMSE", "Range", "Bias", "FLIP", "Tables", "Rounds")
     lines = []
     for row in rows:
-        parts = [f"{row.parts[name]:.3g}" for name in ("plan", "simulate", "trace", "compile")]
+        parts = [f"{row.parts.get(name, 0.0):.3g}" for name in (*PARTS, "compile")]
         bias = "" if row.bias is None else f"{row.bias:.2g}"
         flip = "" if row.flip is None else f"{row.flip:.3f}"
         tables = "" if row.table is None else f"{row.table:.2g}"
+        several = row.rounds > 1
+        error = f"{row.error:.3g}"
         cells = [
-            html.escape(row.name), f"{row.seconds:.3g}", f"{row.fastest:.3g} to {row.slowest:.3g}", *parts,
-            f"{row.error:.3g}", f"{row.least_error:.2g} to {row.most_error:.2g}", bias, flip, tables,
-            str(row.rounds),
+            html.escape(row.name), f"{row.seconds:.3g}", f"{row.fastest:.3g} to {row.slowest:.3g}" if several else "",
+            *parts, f"<span class='covered'>{error} *</span>" if report.covered(row) else error,
+            f"{row.least_error:.2g} to {row.most_error:.2g}" if several else f"&plusmn; {row.doubt:.1g}", bias, flip,
+            tables, str(row.rounds),
         ]  # fmt: skip
         marked = ' class="front"' if row.front else ""
         lines.append(f"<tr{marked}>{''.join(f'<td>{cell}</td>' for cell in cells)}</tr>")
@@ -158,7 +213,4 @@ def _figure(pixels: np.ndarray, caption: str) -> str:
 
 def _embedded(pixels: np.ndarray) -> str:
     """A linear image as a data URI."""
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "one.png"
-        image.write_layers({"color": pixels}, file)
-        return "data:image/png;base64," + base64.b64encode(file.read_bytes()).decode("ascii")
+    return "data:image/png;base64," + base64.b64encode(quick.png(quick.eight_bit(pixels))).decode("ascii")

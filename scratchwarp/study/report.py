@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from .. import __version__, image
+from .. import __version__
+from ..image import quick
 from ..plan.knobs import KNOBS
 from ..scene.knob import Value
 from ..whole import whole
@@ -32,6 +33,7 @@ class Row:
         bias: relMSE against the knob's reference value with the same samples: what is left without noise.
         flip: mean FLIP. rounds: renderings. front: nothing measured is both faster and closer.
         table: error of the tables themselves, where only they are turned.
+        doubt: standard error of ``error``, from its spread over the pixels of one round.
     """
 
     name: str
@@ -48,6 +50,7 @@ class Row:
     rounds: int
     front: bool = False
     table: float | None = None
+    doubt: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,23 +90,47 @@ class Report:
         values = sorted(found, key=lambda v: KNOBS[name].values.index(v) if v in KNOBS[name].values else int(v))
         return tuple(found[value] for value in values)
 
+    @property
+    def floor(self) -> float | None:
+        """relMSE that the noise of the reference alone makes; None where it is not known."""
+        return self.about.get("floor")
+
+    def covered(self, row: Row) -> bool:
+        """Whether more of a row's error is the noise of the reference than its own."""
+        return self.floor is not None and row.error < 2.0 * self.floor
+
+    def sorted_rows(self) -> tuple[Row, ...]:
+        """The defaults, then rows by knob and value, then those of several knobs, fastest first."""
+        single = [row for name in self.about["defaults"] for row in self.knob_rows(name)]
+        order = {row.name: number for number, row in enumerate(single)}
+
+        def key(row: Row) -> tuple[int, float]:
+            return min(len(row.knobs), 2), order[row.name] if len(row.knobs) == 1 else row.seconds
+
+        return tuple(sorted(self.rows, key=key))
+
     def falls(self, name: str) -> bool:
         """Whether a knob's error falls from value to value to the reference, within its noise.
 
         What a knob does is its bias, where it has one; noise is what the least and the greatest error of a setting are
-        apart, and a tenth of the error.
+        apart, of one round twice the standard error of the mean over its pixels, and a tenth of the error at least.
         """
         rows = self.knob_rows(name)
         values = [row.error if row.bias is None else row.bias for row in rows]
-        slack = [max(row.most_error - row.least_error, 0.1 * value) for row, value in zip(rows, values, strict=True)]
+        apart = [row.most_error - row.least_error if row.rounds > 1 else 2.0 * row.doubt for row in rows]
+        slack = [max(own, 0.1 * value) for own, value in zip(apart, values, strict=True)]
         if any(row.bias is not None for row in rows):  # the reference has none of its own
             values = [value for row, value in zip(rows, values, strict=True) if row.bias is not None]
             slack = [0.1 * max(values) for _ in values]
-        return all(b <= a + s for a, b, s in zip(values, values[1:], slack, strict=False))
+        noise = [max(pair) for pair in zip(slack, slack[1:], strict=False)]
+        return all(b <= a + s for a, b, s in zip(values, values[1:], noise, strict=False))
 
     def record(self) -> dict[str, Any]:
         """Everything but the images, as what JSON can hold."""
-        rows = [{**asdict(row), "knobs": dict(row.knobs), "parts": dict(row.parts)} for row in self.rows]
+        rows = [
+            {**asdict(row), "knobs": dict(row.knobs), "parts": dict(row.parts), "covered": self.covered(row)}
+            for row in self.rows
+        ]
         knobs = {n: _described(n) | {"falls": self.falls(n)} for n in self.about["defaults"]}
         return {"about": {**self.about, **machine()}, "knobs": knobs, "rows": rows}
 
@@ -115,9 +142,10 @@ class Report:
         target = Path(folder)
         target.mkdir(parents=True, exist_ok=True)
         for name, pixels in {"reference": self.reference, **self.images}.items():
-            image.write_layers({"color": pixels}, target / f"{file_name(name)}.png")
+            with whole(target / f"{file_name(name)}.png") as draft:
+                draft.write_bytes(quick.png(quick.eight_bit(pixels)))
         _text(target / "report.json", json.dumps(self.record(), indent=1, default=str) + "\n")
-        _text(target / "report.csv", _table(self.rows))
+        _text(target / "report.csv", _table(self))
         _text(target / "report.html", page(self))
         return target / "report.html"
 
@@ -164,6 +192,7 @@ def _row(name: str, own: Sequence[Measurement], base: float) -> Row:
         flip=float(np.mean(flips)) if flips else None,
         rounds=len(own),
         table=next((one.table for one in own if one.table is not None), None),
+        doubt=float(np.sqrt(np.mean([one.doubt**2 for one in own]) / len(own))),
     )
 
 
@@ -177,14 +206,15 @@ def _described(name: str) -> dict[str, Any]:
     return {"error": knob.error, "source": knob.source, "values": knob.values, "reference": knob.reference}
 
 
-def _table(rows: Sequence[Row]) -> str:
-    head = ("name", "seconds", "fastest", "slowest", *PARTS, "compile", "error", "least_error", "most_error")
+def _table(report: Report) -> str:
+    head = ("name", "seconds", "fastest", "slowest", *PARTS, "compile", "error", "least_error", "most_error", "doubt")
+    tail = ("bias", "flip", "table", "rounds", "front", "covered")
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow((*head, "bias", "flip", "table", "rounds", "front"))
-    for row in rows:
-        values = {**vars(row), **row.parts}
-        writer.writerow([values[name] for name in (*head, "bias", "flip", "table", "rounds", "front")])
+    writer.writerow((*head, *tail))
+    for row in report.rows:
+        values = {**vars(row), **row.parts, "covered": report.covered(row)}
+        writer.writerow([values[name] for name in (*head, *tail)])
     return stream.getvalue()
 
 

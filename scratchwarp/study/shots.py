@@ -13,6 +13,7 @@ import numpy as np
 from ..kernels import KernelKey, Parts, kernel_key
 from ..plan import EffectPlan, make_plan
 from ..profiles import Table
+from ..render.interrupt import Control
 from ..render.progress import Progress, silent
 from ..render.renderer import render
 from ..render.tables import identity, simulate_table
@@ -81,11 +82,16 @@ class Shots:
             simulate_table(replace(table, resolution=16, rays=8, parts=()), 1)
 
     def take(
-        self, knobs: Mapping[str, Value], seed: int, progress: Progress = silent, stock: Stock | None = None
+        self,
+        knobs: Mapping[str, Value],
+        seed: int,
+        progress: Progress = silent,
+        stock: Stock | None = None,
+        control: Control | None = None,
     ) -> Shot:
         """Render a setting. ``stock``: what may be used, that of the defaults unless given. The defaults leave theirs.
 
-        Raises ValueError where the setting cannot be planned.
+        Raises ValueError where the setting cannot be planned, ``Stopped`` where ``control`` ends it.
         """
         stock = self.stock if stock is None else stock
         plan = self.planned(knobs)
@@ -96,11 +102,10 @@ class Shots:
         tables = {name: stock.tables[name] for name in own if name in stock.tables}
         there = len(tables)
         parts = stock.parts.copy(() if own == list(stock.tables) else ("tables",))  # which are written over in place
-        film = render(
-            self.scene, replace(plan, aim=None, settings=settings), progress=progress, tables=tables, parts=parts
-        )
+        given = replace(plan, aim=None, settings=settings)
+        film = render(self.scene, given, progress, tables=tables, parts=parts, control=control)
         stats = film.stats
-        fresh = {name: seconds for name, seconds in parts.seconds.items()}
+        fresh = dict(parts.seconds)
         built = {name: seconds for name, seconds in stock.built.items() if name not in fresh} | fresh
         shared = stock.simulated * there / max(len(stock.tables), 1)
         spent = {

@@ -10,6 +10,7 @@ import numpy as np
 from ..kernels import kernel_key
 from ..plan.knobs import KNOBS, acting, checked
 from ..render.described import scene_digest
+from ..render.interrupt import Control
 from ..render.progress import Progress, silent
 from ..scene import Scene, Settings
 from ..scene.digest import digest
@@ -17,7 +18,7 @@ from ..scene.knob import Value
 from ..whole import whole
 from . import reference as references
 from .measurement import PARTS, Measurement, Notebook, header, setting_name
-from .measures import flip, rel_mse
+from .measures import flip, rel_mse, uncertainty
 from .report import Report, file_name
 from .shots import Setting, Shot, Shots
 from .table_error import slices_of, table_error
@@ -69,6 +70,7 @@ class Study:
 
     @property
     def spp(self) -> int:
+        """Samples a pixel of the defaults."""
         return self.shots.plan.settings.spp or 1
 
     @property
@@ -184,18 +186,19 @@ class Study:
         left: float = float("inf"),
         cost: Callable[[Mapping[str, Value]], float] | None = None,
         progress: Progress = silent,
+        control: Control | None = None,
     ) -> Shot:
         """Render a setting and keep what it took. ``left``: seconds that another render to compare it with may take, by
-        ``cost``."""
+        ``cost``. ``Stopped`` where ``control`` ends it, with nothing kept."""
         seed = self.seed(repeat)
         if not knobs and repeat == 0 and self.first is not None:
             shot = self.first
         elif not knobs:
             self._known.clear()
             self.shots.stock = type(self.shots.stock)()
-            shot = self.shots.take({}, seed, progress)
+            shot = self.shots.take({}, seed, progress, None, control)
         else:
-            shot = self.shots.take(knobs, seed, progress)
+            shot = self.shots.take(knobs, seed, progress, None, control)
         self.first = None
         name, image = setting_name(knobs), shot.image
         bias = None
@@ -206,8 +209,8 @@ class Study:
         total = sum(shot.seconds[part] for part in PARTS)
         base = total if not knobs else self._base(repeat) or total
         error, table = rel_mse(image, self.reference), self._table_error(knobs, shot) if repeat == 0 else None
-        seen = flip(image, self.reference)
-        self.book.add(Measurement(dict(knobs), repeat, dict(shot.seconds), base, error, bias, seen, seed, table))
+        seen, doubt = flip(image, self.reference), uncertainty(image, self.reference)
+        self.book.add(Measurement(dict(knobs), repeat, dict(shot.seconds), base, error, bias, seen, seed, table, doubt))
         if len(knobs) < 2 and name not in self._images:
             self._keep(name, image)
         return shot

@@ -14,6 +14,7 @@ import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 
+from ..render.interrupt import Control, Stopped
 from ..render.progress import Progress, silent
 from ..scene import Scene, Settings
 from ..scene.knob import Value
@@ -25,6 +26,9 @@ from .study import Study
 
 ROUNDS = 0.6
 """Share of a budget after which no later round of settings begins: several knobs are turned then."""
+LATE = 0.08
+"""Share of a budget by which the reference may be late, without which there is no report at all. A setting is given up
+at half of that."""
 REPORT = (1.0, 0.02)
 """Seconds, and a share of the budget, that are kept for writing the report."""
 
@@ -40,6 +44,7 @@ def sweep(
     progress: Progress | None = None,
     widths: Sequence[int] = (),
     clock: Callable[[], float] = time.perf_counter,
+    begun: float | None = None,
 ) -> Report:
     """Error against time of every knob, one at a time, then of several at once while the budget lasts.
 
@@ -51,17 +56,16 @@ def sweep(
             the next call that is alike. None: every setting in every round, and no joint search.
         folder: measurements and images are kept there as they come, and found again by the next call that is alike.
         widths: in pixels, from the widest, that the image may have instead where the budget asks for it.
-        clock: seconds.
+        clock: seconds. begun: when the budget began by it; unless given, when reading the scene did.
 
     Raises ValueError on unknown knobs or values, where the scene cannot be planned, and on a budget that is too short
     for the defaults and the least reference; it says how long they take.
     """
     if repeats < 1:
         raise ValueError(f"repeats must be 1 or more, got {repeats}")
-    progress = progress or silent
+    progress, now = progress or silent, clock()
     study = Study(scene, settings or Settings(width=160), knobs, reference, Path(folder) if folder else None)
     if budget is None:
-        start = clock()
         study.open({})
         study.known_reference(lambda done, total, what: progress(done, total, f"reference, {what}"))
         todo = [(own, number) for number in range(repeats) for own in study.settings if not study.book.has(own, number)]
@@ -69,20 +73,27 @@ def sweep(
             progress(number, len(todo), "settings")
             study.measure(*job)
         progress(len(todo), len(todo), "settings")
-        return study.report(clock() - start)
-    return _Budgeted(study, budget, clock, progress, widths).run(repeats)
+        return study.report(clock() - now)
+    began = now - scene.seconds if begun is None else begun
+    return _Budgeted(study, budget, clock, began, progress, widths).run(repeats)
 
 
 class _Budgeted:
     """A study that ends in time."""
 
     def __init__(
-        self, study: Study, budget: float, clock: Callable[[], float], progress: Progress, widths: Sequence[int]
+        self,
+        study: Study,
+        budget: float,
+        clock: Callable[[], float],
+        begun: float,
+        progress: Progress,
+        widths: Sequence[int],
     ) -> None:
         self.study, self.budget, self.clock, self.widths = study, budget, clock, widths
-        self.start = clock() - study.scene.seconds
+        self.start = begun
         self.guess = Guess(study.shots)
-        self.told, self.refused = progress, 0
+        self.told, self.control, self.late = progress, Control(), False
 
     @property
     def left(self) -> float:
@@ -93,6 +104,13 @@ class _Budgeted:
         """Show how much of the budget is spent."""
         spent = min(self.clock() - self.start, self.budget)
         self.told(round(10 * spent), round(10 * self.budget), f"of {self.budget:.0f} s")
+
+    def watch(self, done: int, total: int, what: str) -> None:
+        """``tick``, and give up a setting that is late by half of ``LATE``."""
+        self.tick()
+        if self.clock() - self.start > (1.0 + 0.5 * LATE) * self.budget and self.study.book.rows:
+            self.late = True
+            self.control.stop.set()
 
     def run(self, repeats: int) -> Report:
         """Choose the size and the reference, render what fits."""
@@ -127,7 +145,7 @@ class _Budgeted:
     def _enough(self, knobs: Mapping[str, Value], times: int = 1) -> None:
         """ValueError where not even a render fits that there must be, and the defaults after it."""
         needed = self._seconds(knobs, times)
-        if needed > self.left:
+        if needed > self.left + LATE * self.budget:
             spent = self.clock() - self.start
             size = "x".join(map(str, self.study.shots.plan.size))
             raise ValueError(
@@ -174,7 +192,13 @@ class _Budgeted:
         if needed > self.left and not always:
             return False
         predicted = self.guess.before(knobs)
-        shot = study.measure(knobs, repeat, self.left - needed, self._seconds, self.tick)
+        self.control = Control()
+        try:
+            shot = study.measure(knobs, repeat, self.left - needed, self._seconds, self.watch, self.control)
+        except Stopped:
+            if not self.late:
+                raise
+            return False
         self.guess.learn(predicted, shot)
         self.tick()
         return True

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...scene import Scene
+from ...scene import Scene, Settings
+from ...scratches.knobs import FOOTPRINTS
 
 MOST = 20_000
 """Triangles of an instance that are looked at; of more, every second, third and so on."""
@@ -28,7 +29,13 @@ class Print:
         return 1.128 * self.edge * (1.0 + self.stretch) / 2.0
 
 
-def footprints(scene: Scene, size: tuple[int, int], spp: int) -> list[Print]:
+def parts_of_pixel(settings: Settings) -> float:
+    """How many of what a sample stands for make a pixel: its samples, unless a coverage filter says otherwise."""
+    edge = FOOTPRINTS.get(str(settings.knobs.get("scratches.coverageFilter")), 0.0)
+    return 1.0 / edge**2 if edge > 0.0 else float(settings.spp or 1)
+
+
+def footprints(scene: Scene, size: tuple[int, int], spp: float) -> list[Print]:
     """Of each material; ``size``: of the image in pixels. What hides what is not looked at."""
     camera = scene.camera
     left, right, bottom, top = camera.window(*size, scene.options.conform, scene.options.pixel_aspect)

@@ -34,7 +34,7 @@ def groove_units(scene: Scene, plan: EffectPlan, shares: Sequence[float]) -> Uni
     found: Units = {}
     if not plan.on("grooves"):
         return found
-    prints = footprints(scene, plan.size, plan.settings.spp or 1)
+    prints = footprints(scene, plan.size, parts_of_pixel(plan.settings))
     points = sum(_point(light) for light in scene.lights)
     wide = len(scene.lights) - points
     asked = int(plan.settings.knobs.get("grooves.lines", 48))

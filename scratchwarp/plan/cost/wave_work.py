@@ -22,7 +22,7 @@ from ..choice import EffectPlan
 from ..crowds import SEEN, STRAY, laid, lit, under
 from ..knobs import value
 from ..wave_effects import footprint_and_triangle
-from .footprints import footprints
+from .footprints import footprints, parts_of_pixel
 
 Units = dict[tuple[str, str], float]
 SLACK = 0.03
@@ -41,7 +41,7 @@ def wave_units(scene: Scene, plan: EffectPlan, shares: Sequence[float]) -> Units
     found: Units = {}
     if not plan.on("diffraction"):
         return found
-    prints = footprints(scene, plan.size, plan.settings.spp or 1)
+    prints = footprints(scene, plan.size, parts_of_pixel(plan.settings))
     triangle = 1e6 * footprint_and_triangle(scene, plan.settings, plan.waves)[1]
     lights, most = _lights(scene, plan), lit(plan.settings.knobs)
 
