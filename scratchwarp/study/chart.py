@@ -16,9 +16,10 @@ def chart(
     dots: Sequence[Row] = (),
     front: Sequence[Row] = (),
     floor: float | None = None,
+    axis: str = "error (relMSE)",
 ) -> str:
     """One line for each knob by its rows, grey dots for other settings, the front as a dashed stair, a cross at the
-    defaults and a dotted line at the ``floor``, the noise of the reference.
+    defaults and a dotted line at the ``floor``, the noise of the reference. ``axis``: what the errors are.
 
     Hovering over a point names it. Errors of 0 are drawn at the lower edge.
     """
@@ -39,7 +40,9 @@ def chart(
     def y(row: Row) -> float:
         return level(row.error)
 
-    legend = [*lines, *(["several knobs"] if dots else []), "front", "defaults"]
+    legend = [*lines, *(["several knobs"] if dots else []), *(["front"] if front else [])]
+    base = next((row for row in every if not row.knobs), None)
+    legend += ["defaults"] if base is not None else []
     height = _HIGH + 20 * math.ceil(len(legend) / _COLUMNS) + 10
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {_WIDE} {height}" role="img" '
@@ -58,7 +61,7 @@ def chart(
             parts.append(f'<text x="{_LEFT - 6}" y="{at + 4:.1f}" text-anchor="end">{label}</text>')
     middle = (_HIGH - _LOW + _TOP) / 2
     parts.append(f'<text x="{(_WIDE + _LEFT) / 2}" y="{_HIGH - 8}" text-anchor="middle">seconds</text>')
-    parts.append(f'<text transform="translate(14 {middle}) rotate(-90)" text-anchor="middle">error (relMSE)</text>')
+    parts.append(f'<text transform="translate(14 {middle}) rotate(-90)" text-anchor="middle">{axis}</text>')
     if floor:
         at = level(floor)
         parts.append(f'<path d="M{_LEFT} {at:.1f}H{_WIDE - _RIGHT}" stroke="#b00" stroke-dasharray="2 4"/>')
@@ -76,7 +79,6 @@ def chart(
         points = " ".join(f"{x(row):.1f},{y(row):.1f}" for row in rows)
         parts.append(f'<polyline points="{points}" fill="none" stroke="{color}" stroke-width="1.6"/>')
         parts += [_dot(x(row), y(row), color, row) for row in rows]
-    base = next((row for row in every if not row.knobs), None)
     if base is not None:
         parts.append(f'<path d="{_cross(x(base), y(base), 7)}" stroke="#000" stroke-width="2"/>')
     for number, name in enumerate(legend):
@@ -116,10 +118,10 @@ def _span(low: float, high: float) -> tuple[float, float]:
 
 
 def _ticks(low: float, high: float) -> list[tuple[float, int, str]]:
-    """(power, first digit, label or nothing) of 1, 2 and 5 times powers of ten."""
+    """(power, first digit, label or nothing) of 1, 2 and 5 times powers of ten, of every digit over less than one."""
     found = []
     for power in range(math.floor(low), math.ceil(high) + 1):
-        for digit in (1, 2, 5):
+        for digit in (1, 2, 5) if high - low > 0.9 else range(1, 10):
             at = power + math.log10(digit)
             if low <= at <= high:
                 label = f"{digit * 10.0**power:.3g}" if digit == 1 or high - low < 2.5 else ""

@@ -18,10 +18,11 @@ def levels(
     """Three levels of units: each knob's cheapest value with its reference value; its middle value, and the dearest of
     one that is noise; the others.
 
-    What needs nothing turned is left out.
+    What needs nothing turned is left out. In each level, noise comes first, then knobs that leave tables as they are,
+    then those of tables, then those that switch code, which must be compiled.
     """
     first, second, third = list[Unit](), list[Unit](), list[Unit]()
-    for name, values in ladders.items():
+    for name, values in sorted(ladders.items(), key=lambda item: _late(item[0])):
         others = [value for value in values if value != defaults[name]]
         if not others:
             continue
@@ -39,3 +40,11 @@ def levels(
             second += [({name: value},) for value in chosen]
             third += [({name: value},) for value in rest if value not in chosen]
     return tuple(first), tuple(second), tuple(third)
+
+
+def _late(name: str) -> int:
+    """Noise first, then what needs no other tables, then tables, then code that must be compiled."""
+    knob = KNOBS[name]
+    if knob.switches or name == "scratches.model":
+        return 4
+    return 0 if knob.noise else 2 + (knob.limits is None) if knob.place[0] == "table" else 1

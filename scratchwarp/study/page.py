@@ -4,6 +4,7 @@ import base64
 import html
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -32,14 +33,14 @@ PAPERS = (
 _STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; max-width: 76rem; margin: 2rem auto; padding: 0 1rem; color: #222; }
 h1 { font-size: 1.6rem; } h2 { font-size: 1.2rem; margin-top: 2.4rem; } h3 { font-size: 1rem; margin-bottom: .3rem; }
-table { border-collapse: collapse; margin: 1rem 0; font-size: .9rem; }
-th, td { padding: .2rem .7rem; text-align: right; border-bottom: 1px solid #ddd; white-space: nowrap; }
+table { border-collapse: collapse; margin: 1rem 0; font-size: .85rem; }
+th, td { padding: .2rem .5rem; text-align: right; border-bottom: 1px solid #ddd; white-space: nowrap; }
 th:first-child, td:first-child { text-align: left; white-space: normal; }
 tr.front td { font-weight: 700; }
 .note { border-left: .25rem solid #d55e00; padding-left: .7rem; }
 .covered { color: #888; font-weight: 400; }
 .row { display: flex; flex-wrap: wrap; gap: .6rem; }
-figure { margin: 0; width: 11.5rem; } figure img { width: 100%; display: block; image-rendering: pixelated; }
+figure { margin: 0; width: 9.9rem; } figure img { width: 100%; display: block; image-rendering: pixelated; }
 figcaption { color: #555; font-size: .8rem; }
 .large figure { width: 18rem; }
 svg { max-width: 52rem; width: 100%; }
@@ -105,7 +106,8 @@ that a slow moment of the machine does not count; the range is over rounds. relM
 squared difference over the squared luminance of the reference (plus a hundredth of its squared mean). Bias is the same
 against the knob's value in the reference with the same samples: noise cancels, and what is left is what the knob does.
 Tables is the share of the light that tables themselves send elsewhere, against those of the reference. FLIP is the
-difference seen when flipping between two images, 0 to 1. The front is in bold.</p>
+difference seen when flipping between two images, 0 to 1. Beside relMSE stands its range over rounds, or, of one
+round, its standard error as a mean over pixels. The front is in bold.</p>
 {_table(report, told)}{others}
 <h2>How it was measured</h2>
 <table>{facts}</table>
@@ -138,47 +140,67 @@ def _notes(report: Report) -> str:
 
 
 def _charts(report: Report, lines: Mapping[str, Sequence[Row]], joint: Sequence[Row]) -> str:
-    """Plots of at most ``MOST`` knobs each, those first that change most."""
+    """The errors of all knobs, and without noise what those do that are none, in plots of ``MOST`` knobs at most."""
 
-    def reach(name: str) -> float:
-        errors = [max(row.error, 1e-12) for row in lines[name]]
-        seconds = [max(row.seconds, 1e-6) for row in lines[name]]
+    def reach(rows: Sequence[Row]) -> float:
+        errors, seconds = [max(row.error, 1e-12) for row in rows], [max(row.seconds, 1e-6) for row in rows]
         return math.log(max(errors) / min(errors)) + math.log(max(seconds) / min(seconds))
 
-    order = sorted(lines, key=reach, reverse=True)
-    drawn = []
-    for start in range(0, max(len(order), 1), MOST):
-        names = [name for name in lines if name in order[start : start + MOST]]
-        if start:
-            drawn.append("<h3>Knobs that change less here</h3>")
-        own = {name: lines[name] for name in names}
-        drawn.append(chart(own, () if start else joint, () if start else report.pareto(), report.floor))
+    order = sorted(lines, key=lambda name: reach(lines[name]), reverse=True)[:MOST]
+    drawn = [chart({n: lines[n] for n in lines if n in order}, joint, report.pareto(), report.floor)]
+    if others := [name for name in lines if name not in order]:
+        drawn.append(f"<p>Not drawn, for they change less here: {html.escape(', '.join(others))}.</p>")
+    biases: dict[str, list[Row]] = {}
+    for name, rows in lines.items():
+        own = [replace(row, error=row.bias) for row in rows if row.bias]
+        if own:
+            biases[name] = own
+    if biases:
+        told = sorted(biases, key=lambda name: max(row.error for row in biases[name]), reverse=True)[:MOST]
+        drawn.append(
+            "<h3>Without noise</h3><p>What a knob does, told apart from noise: its bias, against its own value in the "
+            "reference with the same samples. More samples do not cure it. Values without any are not drawn.</p>"
+        )
+        drawn.append(chart({n: biases[n] for n in biases if n in told}, axis="bias (relMSE, same samples)"))
     return "".join(drawn)
 
 
 def _table(report: Report, rows: Sequence[Row]) -> str:
-    timed = ("Setting", "Seconds", "Range [s]", "Plan [s]", "Simulate [s]", "Build [s]", "Trace [s]", "Compile [s]")
-    head = (*timed, "relMSE", "Range", "Bias", "FLIP", "Tables", "Rounds")
+    """Columns that nothing is in are left out."""
+    several = any(row.rounds > 1 for row in rows)
+    columns: dict[str, list[str]] = {
+        "Setting": [html.escape(row.name) for row in rows],
+        "Seconds": [f"{row.seconds:.3g}" for row in rows],
+        "Range": [f"{row.fastest:.3g} to {row.slowest:.3g}" if row.rounds > 1 else "" for row in rows],
+    }
+    for part in (*PARTS, "compile"):
+        columns[part.capitalize()] = [_seconds(row.parts.get(part, 0.0)) for row in rows]
+    columns |= {
+        "relMSE": [_error(report, row) for row in rows],
+        "Bias": ["" if row.bias is None else f"{row.bias:.2g}" for row in rows],
+        "Tables": ["" if row.table is None else f"{row.table:.2g}" for row in rows],
+        "FLIP": ["" if row.flip is None else f"{row.flip:.3f}" for row in rows],
+        "Rounds": [str(row.rounds) if several else "" for row in rows],
+    }
+    shown = {name: cells for name, cells in columns.items() if any(cell not in ("", "0") for cell in cells)}
     lines = []
-    for row in rows:
-        parts = [f"{row.parts.get(name, 0.0):.3g}" for name in (*PARTS, "compile")]
-        bias = "" if row.bias is None else f"{row.bias:.2g}"
-        flip = "" if row.flip is None else f"{row.flip:.3f}"
-        tables = "" if row.table is None else f"{row.table:.2g}"
-        several = row.rounds > 1
-        error = f"{row.error:.3g}"
-        cells = [
-            html.escape(row.name), f"{row.seconds:.3g}", f"{row.fastest:.3g} to {row.slowest:.3g}" if several else "",
-            *parts, f"<span class='covered'>{error} *</span>" if report.covered(row) else error,
-            f"{row.least_error:.2g} to {row.most_error:.2g}" if several else f"&plusmn; {row.doubt:.1g}", bias, flip,
-            tables, str(row.rounds),
-        ]  # fmt: skip
+    for number, row in enumerate(rows):
         marked = ' class="front"' if row.front else ""
-        lines.append(f"<tr{marked}>{''.join(f'<td>{cell}</td>' for cell in cells)}</tr>")
-    return (
-        f"<div class='wide'><table><thead><tr>{''.join(f'<th>{name}</th>' for name in head)}</tr></thead>"
-        f"<tbody>{''.join(lines)}</tbody></table></div>"
-    )
+        lines.append(f"<tr{marked}>{''.join(f'<td>{cells[number]}</td>' for cells in shown.values())}</tr>")
+    timed = {"Seconds", "Range", *(part.capitalize() for part in (*PARTS, "compile"))}
+    head = "".join(f"<th>{name}{' [s]' if name in timed else ''}</th>" for name in shown)
+    return f"<div class='wide'><table><thead><tr>{head}</tr></thead><tbody>{''.join(lines)}</tbody></table></div>"
+
+
+def _seconds(seconds: float) -> str:
+    return "0" if seconds < 5e-4 else f"{seconds:.3f}" if seconds < 1.0 else f"{seconds:.3g}"
+
+
+def _error(report: Report, row: Row) -> str:
+    """relMSE with how much it may be off: its range over rounds, or the standard error over pixels."""
+    text = f"{row.error:.3g}"
+    text += f" ({row.least_error:.2g} to {row.most_error:.2g})" if row.rounds > 1 else f" &plusmn; {row.doubt:.1g}"
+    return f"<span class='covered'>{text} *</span>" if report.covered(row) else text
 
 
 def _strip(report: Report, name: str, rows: Sequence[Row]) -> str:

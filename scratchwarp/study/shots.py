@@ -70,6 +70,10 @@ class Shots:
         found = self._plans[name]
         return None if isinstance(found, str) else found
 
+    def known(self, knobs: Mapping[str, Value]) -> bool:
+        """Whether a setting was planned already."""
+        return setting_name(knobs) in self._plans
+
     def missing(self, plan: EffectPlan) -> tuple[float, bool]:
         """(share of a plan's tables that are not in stock, whether it has another kernel than what is in stock)."""
         own = [identity(table) for table in plan.tables]

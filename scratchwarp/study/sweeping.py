@@ -127,7 +127,8 @@ class _Budgeted:
         study.known_reference(self.tick)
         self._measure({}, 0, always=not study.book.rows)
         for level in order.levels(study.ladders, study.defaults, study.best):
-            self._level(level)
+            for knobs in (knobs for unit in level for knobs in unit):
+                self._measure(knobs, 0)
         for repeat in range(1, repeats):
             for knobs in [dict(row.knobs) for row in study.book.rows if row.repeat == 0 and len(row.knobs) < 2]:
                 if self.clock() - self.start < ROUNDS * self.budget:
@@ -165,7 +166,7 @@ class _Budgeted:
         for wider in sorted({*self.widths, widest or 0} if self.widths else (), reverse=True):
             study.resize(wider)
             first = order.levels(study.ladders, study.defaults, study.best)[0]
-            once = self._seconds({}) * (1.0 + sum(map(len, first)))
+            once = self._seconds({}) * (1.0 + len(first))
             most = self._seconds({**study.best, "spp": study.least_samples}, 2)
             width = wider
             if once < 0.5 * self.budget and (most < share or wider == min(self.widths)):
@@ -188,6 +189,8 @@ class _Budgeted:
         study = self.study
         if study.book.has(knobs, repeat):
             return True
+        if (self.left <= 0.0 or self.guess.planning(knobs) > self.left) and not always:
+            return False
         needed = 0.0 if not knobs and repeat == 0 and study.first is not None else self._seconds(knobs)
         if needed > self.left and not always:
             return False
@@ -202,13 +205,3 @@ class _Budgeted:
         self.guess.learn(predicted, shot)
         self.tick()
         return True
-
-    def _level(self, units: Sequence[order.Unit]) -> None:
-        """Measure units: first those whose kernel is there, the fastest of them first."""
-
-        def key(unit: order.Unit) -> tuple[bool, float]:
-            return any(self.guess.fresh(own) for own in unit), sum(self._seconds(own) for own in unit)
-
-        for unit in sorted(units, key=key):
-            for knobs in unit:
-                self._measure(knobs, 0)

@@ -98,7 +98,7 @@ def test_an_interrupted_study_goes_on(done, tmp_path, monkeypatch):
 
 
 def test_the_joint_search_turns_several(tmp_path):
-    report = sw.study.sweep(world(), {"spp": (1, 4), "tables.bounces": (1, 2000)}, {"spp": 8}, 1, SETTINGS, budget=3.0)
+    report = sw.study.sweep(world(), {"spp": (1, 4), "tables.bounces": (1, 2000)}, {"spp": 8}, 1, SETTINGS, budget=60.0)
     assert {"spp": 1, "tables.bounces": 1} in [dict(row.knobs) for row in report.rows]
 
 

@@ -14,7 +14,7 @@ from ...scene import DistantLight, Scene, SphereLight
 from ..choice import EffectPlan
 from ..grooves import FAR, NEAR, GrooveLayerPlan
 from ..nearby import number_of
-from .footprints import Print, footprints
+from .footprints import Print, footprints, parts_of_pixel
 
 Units = dict[tuple[str, str], float]
 SWEEP = 1.5
