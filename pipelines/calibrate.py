@@ -37,13 +37,14 @@ def calibrated(
 def errors(file: Path, names: Sequence[str], width: int = 64, spp: int = 64, quiet: bool = False) -> Path:
     """Author demo stages, find what each value of each knob leaves there, and write it; the file."""
     with tempfile.TemporaryDirectory() as folder, bar(quiet, "errors") as progress:
-        found = {}
+        found, noises = {}, []
         for number, stage in enumerate(map(Path, author(folder, names=list(names)))):
             progress(number, len(names), f"errors of {stage.stem}")
             scene, settings = sw.read(stage), sw.Settings(width=width, spp=spp)
-            noise = knob_errors.noise(scene, settings)
-            found[stage.stem] = {"bias": knob_errors.biases(scene, settings), "noise": noise}
-        return knob_errors.write(file, found, progress)
+            noises.append(knob_errors.noise(scene, settings))
+            for name, variant in knob_errors.variants(scene, settings).items():
+                found[" ".join((stage.stem, name)).strip()] = knob_errors.left(*variant)
+        return knob_errors.write(file, found, noises, progress)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -128,6 +128,13 @@ def _layer_plan(layer: Layer, slack: float) -> GrooveLayerPlan:
     return GrooveLayerPlan(layer, profiles.simplified(drawn, slack), _own(layer), slack, len(drawn) - 1)
 
 
+def recut(grooves: Sequence["GroovePlan | None"], slack: float) -> tuple["GroovePlan | None", ...]:
+    """The same grooves, their cross-sections off by ``slack`` widths at most."""
+    return tuple(
+        own and replace(own, layers=tuple(_layer_plan(old.layer, slack) for old in own.layers)) for own in grooves
+    )
+
+
 def coarse_sections(grooves: Sequence["GroovePlan | None"]) -> str:
     """What ``explain`` says of cross-sections that were simplified; "" where none is."""
     coarse = [own for plan in grooves if plan is not None for own in plan.layers if len(own.section) - 1 < own.facets]

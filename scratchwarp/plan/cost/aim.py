@@ -4,6 +4,7 @@ The error of an image is that of its noise, which falls with samples, and the bi
 are taken for independent, so that relMSE add up. What a bias buys in seconds is set against the samples that it costs.
 """
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import product
@@ -11,9 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from ...scene import Scene
+from ...scene import Scene, Wave
 from ...scene.knob import Value
 from ..choice import EffectPlan
+from ..grooves import recut, slack_of
 from ..knobs import KNOBS, acting, turned_tables
 from .forecast import forecast
 from .models import Costs, Errors, costs, errors, shipped
@@ -29,6 +31,10 @@ NOMINAL = 640 * 480
 """Pixels of the image for which the knobs of a quality are weighed."""
 QUALITY_SHARE = 0.0625
 """Of the noise that the samples of a quality leave in a typical image, what its knobs may leave."""
+NEGLIGIBLE = 0.01
+"""Of what knobs may leave together, what makes dearer values of one of them pointless."""
+TYPICAL = 0.4
+"""Of an image, what a material fills on the stages where errors were measured."""
 _TABLE = "table"
 
 
@@ -76,21 +82,24 @@ def _aimed(
     target: float,
 ) -> Aim:  # fmt: skip
     known = acting(plan)
-    fixed = sum(left.bias[n].get(str(v), 0.0) for n, v in given.items() if n in left.bias and n in known)
     seen = visible(scene, plan.size, plan.window)
+    left = _as_seen(plan, seen, left)
+    fixed = sum(left.bias[n].get(str(v), 0.0) for n, v in given.items() if n in left.bias and n in known)
+    if samples is None:  # footprints and lines over them are those of about so many samples
+        plan = replace(plan, settings=replace(plan.settings, spp=wanted(target, left)))
     tables, traced = _ladders(scene, plan, given, prices, left, BIAS_SHARE * target, seen)
     best: tuple[float, float, Aim] | None = None
-    least = fixed + min(bias for _, bias, _ in tables) + min(bias for _, bias, _ in traced)
-    for (own, bias, once), (others, more, each) in product(_front(tables), _front(traced)):
-        whole = fixed + bias + more
+    least = fixed + min(row.bias for row in tables) + min(row.bias for row in traced)
+    for table, other in product(_front(tables), _front(traced)):
+        whole = fixed + table.bias + other.bias
         if whole > max(BIAS_SHARE * target, least):
             continue
         noise = max(target - whole, (1.0 - BIAS_SHARE) * target)
-        seconds = once + each * (samples or needed(noise, left))
+        seconds = table.seconds + other.seconds * (samples or needed(noise, left))
         if best is None or (seconds, whole) < best[:2]:
-            chosen: dict[str, Value] = {**own, **others}
+            chosen: dict[str, Value] = {**table.knobs, **other.knobs}
             number = len(tables) * len(traced)
-            count = samples or wanted(noise, left)
+            count = samples or wanted(noise, left, other.more)
             first = samples or min(FIRST, count)
             best = seconds, whole, Aim(target, whole, noise, first, chosen, count, seconds, number)
     assert best is not None  # there is always the reference
@@ -126,44 +135,88 @@ def suited(
     most = QUALITY_SHARE * one / samples**power
     seen = np.full(max(len(scene.materials), 1), 1.0 / max(len(scene.materials), 1))
     alike = replace(plan, window=(0, plan.size[0], 0, plan.size[1]), settings=replace(plan.settings, threads=1))
-    tables, traced = _ladders(scene, alike, given, prices, left, most, seen)
+    kept = {**given, "grooves.section": "auto"}  # which goes with a quality by itself
+    tables, traced = _ladders(scene, alike, kept, prices, left, most, seen)
     pixels = plan.size[0] * plan.size[1]
     scale = NOMINAL / pixels * samples  # tables against samples as in an image of one size
     best: tuple[float, float, dict[str, Value]] | None = None
-    for (own, bias, once), (others, more, each) in product(_front(tables), _front(traced)):
-        row = once + scale * each, bias + more, {**own, **others}
-        if bias + more <= most and (best is None or row[:2] < best[:2]):
+    for table, other in product(_front(tables), _front(traced)):
+        bias = table.bias + other.bias
+        row = table.seconds + scale * other.seconds, bias, {**table.knobs, **other.knobs}
+        if bias <= most and (best is None or row[:2] < best[:2]):
             best = row
     if best is None:
-        best = 0.0, 0.0, {n: KNOBS[n].reference for n in (*tables[0][0], *traced[0][0])}
+        best = 0.0, 0.0, {n: KNOBS[n].reference for n in (*tables[0].knobs, *traced[0].knobs)}
     return Suited(best[2], best[1], most, len(tables) * len(traced))
 
 
-Rows = list[tuple[dict[str, Value], float, float]]
+@dataclass(frozen=True)
+class Row:
+    """Values of some knobs: the ``bias`` that they leave, ``seconds`` (of tables; of as many samples a pixel as leave
+    the noise of one at the reference values) and ``more``: how many samples those are."""
+
+    knobs: dict[str, Value]
+    bias: float
+    seconds: float
+    more: float = 1.0
+
+
+Rows = list[Row]
 
 
 def _ladders(
     scene: Scene, plan: EffectPlan, given: Mapping[str, Value], prices: Costs, left: Errors, most: float,
     seen: np.ndarray,
 ) -> tuple[Rows, Rows]:  # fmt: skip
-    """(knobs, bias, seconds) of combinations of the knobs of tables, once, and of the others, each sample a pixel."""
+    """Combinations of the knobs of tables, simulated once, and of the others, for each sample."""
     known = acting(plan)
     threads = max(plan.settings.threads or 1, 1)
     speed = 1.0 if threads == 1 else prices.efficiency * threads
     names = [n for n in left.bias if n in known and n not in given]
     of_tables = [n for n in names if KNOBS[n].place[0] == _TABLE]
-    tables = [(k, b, _simulated(plan, k, prices) / speed) for k, b in _combinations(of_tables, left, most)]
+    tables = [Row(k, b, _simulated(plan, k, prices) / speed) for k, b in _combinations(of_tables, left, most)]
     spp, traced = plan.settings.spp or 1, []
-    for knobs, bias in _combinations([n for n in names if n not in of_tables], left, most):
-        cost = forecast(scene, _turned(plan, knobs), prices, seen)
-        traced.append((knobs, bias, cost.part("trace") / spp))
+
+    def each(knobs: Mapping[str, Value]) -> float:
+        return forecast(scene, _turned(plan, knobs), prices, seen).part("trace") / spp
+
+    others = [n for n in names if n not in of_tables and not _authored(plan, n)]
+    ends = {n: [KNOBS[n].checked(list(left.bias[n])[k]) for k in (0, -1)] for n in others}
+    others = [n for n in others if each({n: ends[n][0]}) != each({n: ends[n][1]})]  # what costs nothing does nothing
+    for knobs, bias in _combinations(others, left, most):
+        more = math.prod(left.more_samples(name, value) for name, value in knobs.items())
+        traced.append(Row(knobs, bias, each(knobs) * more, more))
     return tables, traced
 
 
-def wanted(noise: float, left: Errors) -> int:
-    """``needed``, up to the next power of two."""
+def _as_seen(plan: EffectPlan, seen: np.ndarray, left: Errors) -> Errors:
+    """Errors where what knobs act on fills less of the image than it did where they were measured: relMSE is a mean
+    over all pixels."""
+    tabled = [any(p.table >= 0 for p in own) for own in plan.layers]
+    grooved, waved = [[own is not None for own in plans] for plans in (plan.grooves, plan.waves)]
+    acts = {"tables": tabled, "lights": tabled, "grooves": grooved, "diffraction": waved}
+    bounced = plan.on("indirect")  # light goes on to other materials
+
+    def part(name: str) -> float:
+        on = acts.get(name.split(".")[0])
+        if on is None or bounced or len(on) != len(seen):
+            return 1.0
+        return min(1.0, float(seen[np.array(on, bool)].sum()) / TYPICAL)
+
+    bias = {name: {value: part(name) * b for value, b in values.items()} for name, values in left.bias.items()}
+    return replace(left, bias=bias)
+
+
+def _authored(plan: EffectPlan, name: str) -> bool:
+    """Whether a stage means something by what a knob would change: the wavelengths of coloured light."""
+    ranges = {(own.wave.wavelength_range, own.wave.samples) for own in plan.waves if own is not None}
+    return name == "diffraction.wavelengths" and not ranges <= {(Wave.wavelength_range, Wave.samples)}
+
+
+def wanted(noise: float, left: Errors, more: float = 1.0) -> int:
+    """``more`` times ``needed``, up to the next power of two."""
     count = FIRST
-    while count < min(needed(noise, left), MOST):
+    while count < min(more * needed(noise, left), MOST):
         count *= 2
     return count
 
@@ -179,7 +232,9 @@ def _combinations(names: list[str], left: Errors, most: float) -> Iterator[tuple
     ladders = []
     for name in names:
         rows = [(v, left.bias[name][str(v)]) for v in KNOBS[name].values if str(v) in left.bias[name]]
-        ladders.append([row for row in rows if row[1] <= most] or rows[-1:])
+        good = [row for row in rows if row[1] <= most] or rows[-1:]
+        enough = next((k for k, row in enumerate(good) if row[1] <= NEGLIGIBLE * most), len(good) - 1)
+        ladders.append(good[: enough + 1])
     for values in product(*ladders):
         whole = sum(bias for _, bias in values)
         if whole <= most or all(v == ladder[-1][0] for (v, _), ladder in zip(values, ladders, strict=True)):
@@ -189,8 +244,8 @@ def _combinations(names: list[str], left: Errors, most: float) -> Iterator[tuple
 def _front(rows: Rows) -> Rows:
     """Those that nothing beats in both bias and seconds."""
     kept: Rows = []
-    for row in sorted(rows, key=lambda row: (row[2], row[1])):
-        if not kept or row[1] < kept[-1][1]:
+    for row in sorted(rows, key=lambda row: (row.seconds, row.bias)):
+        if not kept or row.bias < kept[-1].bias:
             kept.append(row)
     return kept
 
@@ -205,4 +260,7 @@ def _turned(plan: EffectPlan, knobs: Mapping[str, Value]) -> EffectPlan:
     """The plan with knobs of tracing turned, as far as ``work`` looks."""
     fields: dict[str, Any] = {KNOBS[n].place[1]: v for n, v in knobs.items() if KNOBS[n].place[0] == "settings"}
     known = {**plan.settings.knobs, **knobs}
+    if "grooves.section" in knobs:
+        grooves = recut(plan.grooves, slack_of(knobs["grooves.section"], plan.settings.quality))
+        plan = replace(plan, grooves=grooves)
     return replace(plan, settings=replace(plan.settings, **fields, knobs=known))

@@ -8,7 +8,7 @@ do not depend on the machine; they are shipped in ``errors.json``.
 import json
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -19,7 +19,7 @@ _HERE = Path(__file__).parent
 UNMEASURED = {
     "base.textures": 60.0, "base.normalMaps": 80.0, "base.opacity": 900.0, "lens": 20.0, "lights.mesh": 500.0,
     "lights.cylinder": 250.0, "lights.disk": 350.0, "scratches.full": 10.0, "scratches.responses": 150.0,
-    "base.stencils": 100.0, "base.utia": 200.0, "base.merl": 100.0, "base.rgl": 300.0,
+    "lights.coneTaps": 75.0, "base.stencils": 100.0, "base.utia": 200.0, "base.merl": 100.0, "base.rgl": 300.0,
 }  # fmt: skip
 
 
@@ -50,11 +50,17 @@ class Costs:
 
 @dataclass(frozen=True)
 class Errors:
-    """What knobs leave: ``bias``: knob -> value as text -> relMSE that most stages stay below; ``noise``: relMSE of one
-    sample a pixel, typical, and the power of the samples by which it falls."""
+    """What knobs leave: ``bias``: knob -> value as text -> relMSE that most stages stay below, of what of the image it
+    acts on; ``noise``: relMSE of one sample a pixel, typical, and the power of the samples by which it falls;
+    ``noisier``: knob -> value as text -> noise over that at the knob's reference value, of knobs that change it."""
 
     bias: Mapping[str, Mapping[str, float]]
     noise: tuple[float, float] = (0.5, 1.0)
+    noisier: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+
+    def more_samples(self, knob: str, value: object) -> float:
+        """How many times as many samples leave the noise that there is at the knob's reference value."""
+        return self.noisier.get(knob, {}).get(str(value), 1.0) ** (1.0 / self.noise[1])
 
 
 def user_file() -> Path:
@@ -100,4 +106,4 @@ def _costs(file: Path, _changed: int) -> Costs:
 def errors() -> Errors:
     """What was measured of errors."""
     record = json.loads((_HERE / "errors.json").read_text(encoding="utf-8"))
-    return Errors(record["bias"], (float(record["noise"][0]), float(record["noise"][1])))
+    return Errors(record["bias"], (float(record["noise"][0]), float(record["noise"][1])), record.get("noisier", {}))

@@ -29,8 +29,6 @@ SLACK = 0.03
 """About how far [rad] a lobe reaches where surfaces bend."""
 AROUND = 13.0
 """Triangles around one, itself counted."""
-WAVELENGTHS = 16.0
-"""That are summed where no table has colours."""
 DOME = 8.0
 """What a dome takes besides its parts, in parts; seven are usual."""
 _FLAT = (RectLight, DiskLight, CylinderLight, MeshLight)
@@ -81,7 +79,7 @@ def _lights(scene: Scene, plan: EffectPlan) -> dict[str, float]:
     """How often one scratch is in reach of lights: unit -> of points (by wavelengths), caps, polygons and domes."""
     made: dict[str, float] = {}
     middle = _middle(scene, [i for i in scene.instances if any(plan.waves[m] is not None for m in i.materials)])
-    colors = 1.0 if plan.on("diffraction.distantLookup") else WAVELENGTHS
+    colors = 1.0 if plan.on("diffraction.distantLookup") else _wavelengths(plan)
     for light in scene.lights:
         if isinstance(light, DomeLight):
             parts = max(int(value(plan.settings.knobs, "diffraction.slices")) - 1, 1)
@@ -94,6 +92,15 @@ def _lights(scene: Scene, plan: EffectPlan) -> dict[str, float]:
             unit, count = "diffraction.points", SLACK * colors
         made[unit] = made.get(unit, 0.0) + count
     return made
+
+
+def _wavelengths(plan: EffectPlan) -> float:
+    """That are summed where no table has colours: as the knob has it, else the most of any material."""
+    asked = value(plan.settings.knobs, "diffraction.wavelengths")
+    waves = [own.wave for own in plan.waves if own is not None]
+    if asked != "auto":
+        return float(asked)
+    return float(max((3 if wave.sampling == "rgb" else wave.samples for wave in waves), default=1))
 
 
 def _half_angle(scene: Scene, light: Light, middle: np.ndarray) -> tuple[float, int]:

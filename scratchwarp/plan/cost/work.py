@@ -22,8 +22,8 @@ from .wave_work import wave_units
 
 SLICES = {"gamma": 2, "quadratic": 3, "table": 8, "full": 16}
 """About how many slices along the cone a theta model keeps."""
-BOUNCES = 2.0
-"""About how often a path goes on where something reflects something else."""
+GOES_ON = 2.0 / 3.0
+"""How often a path goes on where something reflects something else."""
 
 Units = dict[tuple[str, str], float]
 
@@ -65,7 +65,7 @@ def work(scene: Scene, plan: EffectPlan, seen: np.ndarray | None = None) -> Work
     }
     depth = plan.settings.max_depth or 1
     several = plan.on("indirect") and can_occlude(scene, plan.on("base.opacity"))  # not only grooves light one another
-    indirect = min(depth - 1, BOUNCES) if several else 0.0
+    indirect = GOES_ON * (1.0 - GOES_ON ** (depth - 1)) / (1.0 - GOES_ON) if several else 0.0
     return Work(samples, each, tables, {k: v for k, v in build.items() if v}, indirect)
 
 
