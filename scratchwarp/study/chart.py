@@ -6,7 +6,10 @@ from collections.abc import Mapping, Sequence
 
 from .report import Row
 
-COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7a5195", "#8c564b", "#444444", "#a0a000")
+COLORS = (
+    "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7a5195", "#8c564b", "#444444", "#a0a000",
+    "#00a0a0", "#b04080",
+)  # fmt: skip
 _WIDE, _HIGH, _LEFT, _TOP, _RIGHT, _LOW = 760, 420, 74, 14, 16, 46
 _COLUMNS = 3
 
@@ -17,9 +20,11 @@ def chart(
     front: Sequence[Row] = (),
     floor: float | None = None,
     axis: str = "error (relMSE)",
+    colored: Sequence[str] = (),
 ) -> str:
     """One line for each knob by its rows, grey dots for other settings, the front as a dashed stair, a cross at the
-    defaults and a dotted line at the ``floor``, the noise of the reference. ``axis``: what the errors are.
+    defaults and a dotted line at the ``floor``, the noise of the reference. ``axis``: what the errors are. ``colored``:
+    knobs in the order of their colours, where that is not the order of the lines.
 
     Hovering over a point names it. Errors of 0 are drawn at the lower edge.
     """
@@ -28,6 +33,9 @@ def chart(
     seconds = [max(row.seconds, 1e-6) for row in every] or [1.0]
     x0, x1 = _span(min(seconds), max(seconds))
     y0, y1 = _span(min(*errors, *([floor] if floor else []), max(errors)), max(errors))
+
+    names = list(colored) or list(lines)
+    colors = {name: COLORS[names.index(name) % len(COLORS)] for name in lines}
 
     def x(row: Row) -> float:
         share = (math.log10(max(row.seconds, 1e-6)) - x0) / (x1 - x0)
@@ -74,8 +82,8 @@ def chart(
         parts.append(f'<path d="{path}" fill="none" stroke="#222" stroke-dasharray="5 4"/>')
         parts += [f'<circle cx="{x(r):.1f}" cy="{y(r):.1f}" r="8" fill="none" stroke="#222"/>' for r in ordered]
     parts += [_dot(x(row), y(row), "#999", row) for row in dots]
-    for number, rows in enumerate(lines.values()):
-        color = COLORS[number % len(COLORS)]
+    for name, rows in lines.items():
+        color = colors[name]
         points = " ".join(f"{x(row):.1f},{y(row):.1f}" for row in rows)
         parts.append(f'<polyline points="{points}" fill="none" stroke="{color}" stroke-width="1.6"/>')
         parts += [_dot(x(row), y(row), color, row) for row in rows]
@@ -83,7 +91,7 @@ def chart(
         parts.append(f'<path d="{_cross(x(base), y(base), 7)}" stroke="#000" stroke-width="2"/>')
     for number, name in enumerate(legend):
         left, below = _LEFT + 225 * (number % _COLUMNS), _HIGH + 14 + 20 * (number // _COLUMNS)
-        parts.append(_key(name, COLORS[number % len(COLORS)] if number < len(lines) else "", left, below))
+        parts.append(_key(name, colors.get(name, ""), left, below))
         parts.append(f'<text x="{left + 28}" y="{below}">{html.escape(name)}</text>')
     return "\n".join([*parts, "</g>", "</svg>"])
 

@@ -19,11 +19,15 @@ DIFFERENCE = 4.0
 """Differences are shown so many times brighter."""
 MOST = 6
 """Lines of one plot."""
+LITTLE = 1e-3
+"""Biases below so much of the error of the defaults are not drawn."""
 PAPERS = (
     "B. Raymond, G. Guennebaud, P. Barla: Multi-Scale Rendering of Scratched Materials using a Structured SV-BRDF "
     "Model. ACM Transactions on Graphics 35 (4), 2016.",
     "Z. Velinov, S. Werner, M. Hullin: Real-Time Rendering of Wave-Optical Effects on Scratched Surfaces. Computer "
     "Graphics Forum 37 (2), 2018.",
+    "C. Bosch, X. Pueyo, S. Mérillou, D. Ghazanfarpour: A Resolution Independent Approach for the Accurate Rendering "
+    "of Grooved Surfaces. Computer Graphics Forum 27 (7), 2008.",
     "P. Andersson, J. Nilsson, T. Akenine-Möller, M. Oskarsson, K. Åström, M. Fairchild: FLIP: A Difference Evaluator "
     "for Alternating Images. Proceedings of the ACM on Computer Graphics and Interactive Techniques 3 (2), 2020.",
     "F. Rousselle, C. Knaus, M. Zwicker: Adaptive Rendering with Non-Local Means Filtering. ACM Transactions on "
@@ -147,21 +151,23 @@ def _charts(report: Report, lines: Mapping[str, Sequence[Row]], joint: Sequence[
         return math.log(max(errors) / min(errors)) + math.log(max(seconds) / min(seconds))
 
     order = sorted(lines, key=lambda name: reach(lines[name]), reverse=True)[:MOST]
-    drawn = [chart({n: lines[n] for n in lines if n in order}, joint, report.pareto(), report.floor)]
+    base = next((row.error for row in report.rows if not row.knobs), 0.0)
+    biases = {n: [replace(row, error=row.bias) for row in rows if row.bias and row.bias > LITTLE * base]
+              for n, rows in lines.items()}  # fmt: skip
+    told = sorted((n for n in biases if biases[n]), key=lambda n: max(row.error for row in biases[n]), reverse=True)
+    colors = [*order, *(name for name in told[:MOST] if name not in order)]
+    own = {n: lines[n] for n in lines if n in order}
+    drawn = [chart(own, joint, report.pareto(), report.floor, colored=colors)]
     if others := [name for name in lines if name not in order]:
         drawn.append(f"<p>Not drawn, for they change less here: {html.escape(', '.join(others))}.</p>")
-    biases: dict[str, list[Row]] = {}
-    for name, rows in lines.items():
-        own = [replace(row, error=row.bias) for row in rows if row.bias]
-        if own:
-            biases[name] = own
-    if biases:
-        told = sorted(biases, key=lambda name: max(row.error for row in biases[name]), reverse=True)[:MOST]
+    if told:
         drawn.append(
             "<h3>Without noise</h3><p>What a knob does, told apart from noise: its bias, against its own value in the "
-            "reference with the same samples. More samples do not cure it. Values without any are not drawn.</p>"
+            "reference with the same samples. More samples do not cure it. Values that leave less than a thousandth of "
+            "the error of the defaults are not drawn.</p>"
         )
-        drawn.append(chart({n: biases[n] for n in biases if n in told}, axis="bias (relMSE, same samples)"))
+        own = {n: biases[n] for n in biases if n in told[:MOST]}
+        drawn.append(chart(own, axis="bias (relMSE, same samples)", colored=colors))
     return "".join(drawn)
 
 

@@ -242,7 +242,7 @@ def plots(folder: Path, stages: list[str], width: int, budget: float, knobs: lis
             report = sw.study.sweep(scene, names, settings=settings, budget=budget, repeats=2)
             names = [name for name in report.about["defaults"] if len(report.knob_rows(name)) > 1]
             joint = [row for row in report.rows if len(row.knobs) > 1]
-            drawn = chart({name: report.knob_rows(name) for name in names}, joint, report.pareto())
+            drawn = chart({name: report.knob_rows(name) for name in names}, joint, report.pareto(), report.floor)
             (folder / f"accuracy_{file.stem}.svg").write_text(drawn + "\n", encoding="utf-8")
             print(folder / f"accuracy_{file.stem}.svg", flush=True)
 
