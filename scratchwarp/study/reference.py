@@ -75,9 +75,13 @@ def shrunk(
                 break
             name, lower = min(steps, key=lambda step: seconds({**found, step[0]: step[1]}))
             found[name] = lower
-    if seconds(found) > limit:
-        plain = {n: lowest[n] if KNOBS[n].switches else value for n, value in found.items()}
-        if seconds(plain) < SAVES * seconds(found):
+    samples_alone = {"spp": found["spp"]}
+    for plain in (  # the kernel of the defaults in the end, which is there already
+        {n: lowest[n] if KNOBS[n].switches else value for n, value in found.items()} | samples_alone,
+        dict(lowest) | samples_alone,
+    ):
+        plain = {n: plain[n] for n in found}
+        if seconds(found) > limit and seconds(plain) < SAVES * seconds(found):
             found = plain
     halved(min(fewest, samples))
     while 2 * int(found["spp"]) <= samples and seconds({**found, "spp": 2 * int(found["spp"])}) <= limit:

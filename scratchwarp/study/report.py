@@ -6,7 +6,7 @@ import json
 import os
 import platform
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from statistics import median
 from typing import Any
@@ -34,6 +34,7 @@ class Row:
         flip: mean FLIP. rounds: renderings. front: nothing measured is both faster and closer.
         table: error of the tables themselves, where only they are turned.
         doubt: standard error of ``error``, from its spread over the pixels of one round.
+        beside: bias of the defaults against this, where it is a knob at its value in the reference.
     """
 
     name: str
@@ -51,6 +52,7 @@ class Row:
     front: bool = False
     table: float | None = None
     doubt: float = 0.0
+    beside: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,10 +85,14 @@ class Report:
         return tuple(sorted((row for row in self.rows if row.front), key=lambda row: row.seconds))
 
     def knob_rows(self, name: str) -> tuple[Row, ...]:
-        """The rows of one knob turned alone, and the defaults at their place, from cheap to reference."""
+        """The rows of one knob turned alone, and the defaults at their place with their bias in it, from cheap
+        to reference."""
         default = self.about["defaults"].get(name)
         found = {row.knobs[name]: row for row in self.rows if set(row.knobs) == {name}}
-        found |= {row.knobs.get(name, default): row for row in self.rows if not row.knobs}
+        beside = next((row.beside for row in found.values() if row.beside is not None), None)
+        base = next((row for row in self.rows if not row.knobs), None)
+        if base is not None:
+            found[default] = replace(base, bias=beside)
         values = sorted(found, key=lambda v: KNOBS[name].values.index(v) if v in KNOBS[name].values else int(v))
         return tuple(found[value] for value in values)
 
@@ -192,6 +198,7 @@ def _row(name: str, own: Sequence[Measurement], base: float) -> Row:
         flip=float(np.mean(flips)) if flips else None,
         rounds=len(own),
         table=next((one.table for one in own if one.table is not None), None),
+        beside=float(np.mean(beside)) if (beside := [one.beside for one in own if one.beside is not None]) else None,
         doubt=float(np.sqrt(np.mean([one.doubt**2 for one in own]) / len(own))),
     )
 

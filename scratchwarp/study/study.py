@@ -201,16 +201,21 @@ class Study:
             shot = self.shots.take(knobs, seed, progress, None, control)
         self.first = None
         name, image = setting_name(knobs), shot.image
-        bias = None
+        bias = beside = None
         if len(knobs) < 2:
             self._known[f"{name} @{seed}"] = image
         if len(knobs) == 1:
             bias = self._bias(knobs, image, seed, left, cost)
+            ((knob, value),) = knobs.items()
+            base_image = self._known.get(f"{setting_name({})} @{seed}")
+            if not KNOBS[knob].noise and value == self.best.get(knob) and base_image is not None:
+                beside = rel_mse(base_image, image)
         total = sum(shot.seconds[part] for part in PARTS)
         base = total if not knobs else self._base(repeat) or total
         error, table = rel_mse(image, self.reference), self._table_error(knobs, shot) if repeat == 0 else None
         seen, doubt = flip(image, self.reference), uncertainty(image, self.reference)
-        self.book.add(Measurement(dict(knobs), repeat, dict(shot.seconds), base, error, bias, seen, seed, table, doubt))
+        row = Measurement(dict(knobs), repeat, dict(shot.seconds), base, error, bias, seen, seed, table, doubt, beside)
+        self.book.add(row)
         if len(knobs) < 2 and name not in self._images:
             self._keep(name, image)
         return shot

@@ -9,6 +9,7 @@ import pytest
 import scratchwarp as sw
 from scratchwarp.plan.knobs import KNOBS
 from scratchwarp.study import order, reference, shots, sweeping
+from scratchwarp.study.measures import rel_mse
 from scratchwarp.study.page import page
 from scratchwarp.study.report import Report
 
@@ -122,6 +123,18 @@ def test_the_reference_shrinks_in_order_and_no_further_than_needed():
     assert reference.shrunk(best, lowest, cost, 24.0, 64, 16) == half
 
 
+def test_a_kernel_of_its_own_is_given_up_where_it_takes_too_long():
+    """Any one knob of two keeps the kernel another: none of them saves anything alone."""
+    best = {"spp": 64, "diffraction.colors": "wavelengths", "diffraction.footprint": "exact"}
+    lowest = {"spp": 16, "diffraction.colors": "auto", "diffraction.footprint": "gaussian"}
+
+    def cost(own):
+        return own["spp"] / 16.0 + (0.0 if all(own[n] == lowest[n] for n in own if n != "spp") else 30.0)
+
+    assert reference.shrunk(best, lowest, cost, 40.0, 64, 16) == best
+    assert reference.shrunk(best, lowest, cost, 20.0, 64, 16) == {**lowest, "spp": 64}
+
+
 def test_values_that_a_cheaper_reference_cannot_judge_are_left_out():
     rays = KNOBS["tables.rays"].values
     assert reference.within(rays, "tables.rays", 128, 512, 128) == (8, 16, 32, 64, 128)
@@ -158,3 +171,13 @@ def test_what_renders_share_changes_no_image():
         plan = sw.make_plan(world(), replace(SETTINGS, knobs={**SETTINGS.knobs, **knobs}, seed=3))
         assert np.array_equal(own.take(knobs, 3).image, sw.render(world(), plan)["color"]), knobs
     assert own.take({"spp": 2}, 0).seconds["simulate"] >= own.stock.simulated  # as if it were alone
+
+
+def test_the_defaults_have_a_bias_of_each_knob(slow):
+    """Against the knob at its value in the reference with the same samples, by brute force."""
+    report = study(slow, 90.0, reference={"tables.resolution": 64})
+    base = next(row for row in report.knob_rows("tables.resolution") if not row.knobs)
+    images = [sw.render(world(), sw.make_plan(world(), replace(SETTINGS, knobs={"tables.resolution": bins})))["color"]
+              for bins in (32, 64)]  # fmt: skip
+    assert base.bias == pytest.approx(rel_mse(*images)) and base.bias > 0.0
+    assert next(row for row in report.rows if not row.knobs).bias is None
