@@ -11,6 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
+from scratchwarp.scene import check_archive
+
 _COARSE = np.radians(np.arange(0.0, 180.0, 1.5))
 IMAGES = (".png", ".tif", ".tiff", ".exr", ".jpg", ".jpeg", ".hdr")
 # A groove reaches out to where this share of its depth is regained, and its rims this share of that distance further.
@@ -76,6 +78,8 @@ def _load(path: Path, pitch: float | None, height: float | None) -> Topography:
             needed = "pitch (micrometres between pixels)" if pitch is None else "height (micrometres to white)"
             raise ValueError(f"{path}: {needed} is needed for an image; pass --{needed.split()[0]}")
         return _checked(path, height * read_texture(str(path), "raw")[..., 0].astype(float), pitch, pitch)
+    if path.suffix in (".npz", ".npy"):
+        check_archive(path)
     if path.suffix == ".npz":
         with np.load(path, allow_pickle=False) as held:
             missing = {"height_m", "dx_m", "dy_m"} - set(held.files)

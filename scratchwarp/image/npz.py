@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ..scene import check_archive
 from ..whole import whole
 from .layers import check
 
@@ -25,7 +26,9 @@ def write(layers: Mapping[str, np.ndarray], path: Path, metadata: Mapping[str, A
 
 
 def read(path: Path) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
-    """Layers and metadata that ``write`` wrote; OSError or ValueError when the file is missing or something else."""
+    """Layers and metadata that ``write`` wrote; OSError or ValueError when the file is missing or something else, or
+    claims more than it holds or than there is memory."""
+    check_archive(path)
     with np.load(path, allow_pickle=False) as archive:
         layers = {name: archive[name] for name in archive.files if name != "metadata"}
         metadata = json.loads(str(archive["metadata"])) if "metadata" in archive.files else {}

@@ -17,6 +17,7 @@ import numpy as np
 
 from scratchwarp.profiles.profile import Profile
 from scratchwarp.profiles.table import Table, assembled
+from scratchwarp.scene import check_archive
 from scratchwarp.whole import whole
 
 # Raised whenever the same arguments would give other numbers than before.
@@ -154,6 +155,7 @@ def write_table(table: Table, target: Any) -> None:
 
 def read_table(source: Any) -> Table:
     """The table that ``write_table`` wrote. Raises OSError, ValueError, KeyError or BadZipFile on anything else."""
+    check_archive(source)
     with np.load(source, allow_pickle=False) as held:
         arrays = {name: held[name] for name in held.files}
     metadata = {name.split(".", 1)[1]: value.item() for name, value in arrays.items() if name.startswith("metadata.")}

@@ -16,8 +16,10 @@ Files:
     digest      a hash of records and arrays
     errors      StageError: the input is at fault
     memory      Budget: how much of it a stage may take; TooLarge
+    archive     what NumPy files claim to hold
 """
 
+from .archive import check_archive
 from .camera import Camera
 from .control import Control
 from .errors import StageError
@@ -75,4 +77,5 @@ __all__ = [
     "Texture",
     "TextureInput",
     "Wave",
+    "check_archive",
 ]
