@@ -13,6 +13,8 @@ _vec5 = wp.types.vector(length=5, dtype=float)
 # places of each slice and wavelength.
 _MOST_PANELS = wp.constant(256.0)
 _FEW_PANELS = wp.constant(32)
+# Scratches of more cycles, wider than light is coherent: fringes a few hundredths of a degree apart are seen by no one.
+_FINE = wp.constant(2048.0)
 # Gauss-Legendre over [0, 1].
 _FIVE = wp.constant(_vec5(0.0469100770, 0.2307653449, 0.5, 0.7692346551, 0.9530899230))
 _FIVE_WEIGHTS = wp.constant(_vec5(0.1184634425, 0.2393143352, 0.2844444444, 0.2393143352, 0.1184634425))
@@ -88,7 +90,9 @@ def across_numeric(
         panels = int(wp.max(wp.ceil(cycles), 1.0))
         if cycles > _MOST_PANELS:
             panels = _FEW_PANELS
-            if layer.facets > 0:
+        if layer.facets > 0:
+            fine = cycles > 1.0 and strand.width + 2.0 * strand.depth > _FINE * wavelength
+            if fine or cycles > _MOST_PANELS:
                 return across_facets(a, layer, strand, wavelength, o, s2, low, high)
         width = (high - low) / float(panels)
         for i in range(panels):
