@@ -1,9 +1,12 @@
 """Some stages damaged at random, and those that once failed; ``fuzz`` runs any number of them."""
 
+import sys
+
 import numpy as np
 import pytest
 
-from .fuzz import FINE, plain, run_one
+from .apart import Apart
+from .fuzz import FINE
 from .mutate import mutate
 from .stages import GEOMETRY, LIGHTS, SURFACES, stage
 
@@ -17,14 +20,34 @@ ONCE = {
     1404: "a shape's displayColor was one number",
     2057: "a layer of grooves had curves without points",
 }
-_compiled: set = set()
+
+
+@pytest.fixture(scope="module")
+def apart():
+    """A process that may hang or crash."""
+    process = Apart()
+    yield process
+    process.close()
 
 
 @pytest.mark.parametrize("seed", [*range(100, 100 + STAGES), *ONCE])
-def test_damaged_stages(tmp_path, seed):
+def test_damaged_stages(tmp_path, seed, apart):
     """One kernel is compiled; what needs another is built but not traced."""
-    outcome = run_one(seed, tmp_path, _compiled, 1, plain)
+    outcome = apart.run(seed, tmp_path)
     assert outcome.what in FINE, outcome
+
+
+@pytest.mark.parametrize(
+    ("does", "what"),
+    [("while True: pass", "hang"), ("os.kill(os.getpid(), 11)", "crash"), ("print(line, flush=True)", "image")],
+)
+def test_a_stage_that_never_ends_is_a_failure(tmp_path, does, what):
+    """Reported, and the next one has a process of its own."""
+    script = "import json, os, sys\nfor line in sys.stdin:\n seed = json.loads(line)[0]\n"
+    script += " line = json.dumps({'seed': seed, 'what': 'image'})\n " + does
+    process = Apart((sys.executable, "-c", script), patience=1)
+    assert [process.run(seed, tmp_path).what for seed in (5, 6)] == [what, what]
+    process.close()
 
 
 def test_the_same_number_is_the_same_stage():
