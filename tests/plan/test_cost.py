@@ -13,7 +13,7 @@ from scratchwarp.plan.cost.footprints import footprints
 from scratchwarp.plan.cost.models import Costs, Errors
 from scratchwarp.plan.cost.visible import visible
 from scratchwarp.plan.cost.work import of_table, work
-from scratchwarp.scene import DistantLight, Wave
+from scratchwarp.scene import DistantLight, Profile, Texture, Wave
 
 from ..render import scenes as S
 
@@ -189,3 +189,68 @@ def test_scratches_that_diffract_cost_by_the_lights_that_they_see():
     assert dome[area, "diffraction.domes"] > few[area, "diffraction.domes"] > 0.0
     assert units(SUN)["diffraction", "diffraction.points"] > 0.0
     assert dome["diffraction.segments", "diffraction.strands"] > 0.0
+
+
+def test_cheaper_values_of_knobs_are_predicted_to_be_cheaper():
+    """Cone taps under a dome with a picture, lines over crossing grooves, facets of a round section, wavelengths of
+    light without extent that no table has, surfaces of a path between two plates."""
+
+    def traced(scene, **knobs):
+        settings = sw.Settings(width=64, height=64, spp=4, threads=1, integrator="path", knobs=knobs)
+        return forecast(scene, sw.make_plan(scene, settings), ONE).part("trace")
+
+    pictured = replace(S.dome(), texture=0)
+    sky = replace(world(), lights=(pictured,), textures=(Texture("/sky", np.ones((2, 4, 4), np.float32)),))
+    arc = replace(GROOVE, distribution="crosshatch", profile=Profile("/arc", shape="round"))
+    cut = S.scene([S.plane()], [replace(S.scratched(), layers=(arc,))], [SUN])
+    thin = replace(S.scratched().layers[0], distribution="random", density=1.0, width=2.0, depth=0.5)
+    wave = Wave(phase="exact")
+    spectral = S.scene([S.plane()], [replace(S.scratched(), wave=wave, layers=(thin,))], [SUN])
+    plates = S.scene([S.plane(), S.plane(path="/other")], [S.scratched()], [S.dome()],
+                     instances=[S.place(0, 0, (0, 0, -6)), S.place(1, 0, (0, 0, -5), path="/other")])  # fmt: skip
+    cases = (
+        (sky, "lights.coneTaps", (1, 4, 64)),
+        (cut, "grooves.lines", (4, 24, 192)),
+        (cut, "grooves.section", (20, 5, 0)),
+        (spectral, "diffraction.wavelengths", (4, 16, 64)),
+        (plates, "pathDepth", (1, 2, 4, 8)),
+    )
+    for scene, name, values in cases:
+        seconds = [traced(scene, **{name: value}) for value in values]
+        assert np.all(np.diff(seconds) > 0.0), name
+
+
+def test_noisier_values_take_more_samples():
+    """Twice the noise takes twice the samples where relMSE falls as one over samples."""
+    taps = {"1": 2.0, "64": 1.0}
+    left = replace(LEFT, bias={"lights.coneTaps": {"1": 0.0, "64": 0.0}}, noisier={"lights.coneTaps": taps})
+    assert left.more_samples("lights.coneTaps", 1) == 2.0 and left.more_samples("spp", 4) == 1.0
+    assert wanted(0.01, left, 2.0) == 2 * wanted(0.01, left) == 128
+    pictured = replace(world(), lights=(replace(S.dome(), texture=0),))
+    pictured = replace(pictured, textures=(Texture("/sky", np.ones((2, 4, 4), np.float32)),))
+    dear = replace(ONE, nanoseconds={"lights.coneTaps": 1e6})
+    found = aim(pictured, plan(pictured, max_error=0.02), {}, None, dear, left)
+    assert found.knobs["lights.coneTaps"] == 1 and found.samples == wanted(0.02, left, 2.0)
+
+
+def test_what_costs_nothing_or_is_meant_by_the_stage_is_left_alone():
+    """An even dome is integrated without taps; light of one wavelength stays so."""
+    left = replace(LEFT, bias={"lights.coneTaps": {"1": 0.001, "64": 0.0}})
+    assert not aim(world(), plan(max_error=0.02), {}, None, ONE, left).knobs
+    thin = replace(S.scratched().layers[0], distribution="random", density=1.0, width=2.0, depth=0.5)
+    left = replace(LEFT, bias={"diffraction.wavelengths": {"4": 0.001, "64": 0.0}})
+    for wave, turned in ((Wave(phase="exact"), True), (Wave(phase="exact", wavelength_range=(630.0, 640.0)), False)):
+        scene = S.scene([S.plane()], [replace(S.scratched(), wave=wave, layers=(thin,))], [SUN])
+        made = plan(scene)
+        made = replace(made, settings=replace(made.settings, max_error=0.02))
+        found = aim(scene, made, {}, None, ONE, left)
+        assert ("diffraction.wavelengths" in found.knobs) == turned
+
+
+def test_errors_count_by_how_much_of_the_image_shows_them():
+    """From ten times as far the ball fills a hundredth, and coarser tables do."""
+    far = replace(world(), instances=(S.place(0, 0, (0, 0, -60)),))
+    near, small = (aim(w, plan(w, max_error=0.02), {}, None, ONE, LEFT) for w in (world(), far))
+    assert small.knobs["tables.resolution"] == 64 < near.knobs["tables.resolution"]
+    given = aim(far, plan(far, max_error=0.02), {"tables.resolution": 64, "tables.rays": 512}, None, ONE, LEFT)
+    assert given.bias < 0.1 * 0.02

@@ -1,9 +1,14 @@
 """Prices fitted to measurements, and what knobs leave."""
 
+import json
+
 import pytest
 
+import scratchwarp as sw
 from scratchwarp.study.calibration import PRIOR, fitted
-from scratchwarp.study.knob_errors import summed_up
+from scratchwarp.study.knob_errors import left, round_grooves, summed_up, under_windows, variants, write
+
+from ..render import scenes as S
 
 
 def test_prices_are_found_and_never_below_zero():
@@ -26,3 +31,32 @@ def test_biases_of_stages_are_summed_up_by_what_most_stay_below():
     made = summed_up(stages)["tables.rays"]
     assert made["8"] == pytest.approx(0.42)  # four fifths of five
     assert made["16"] == made["32"] == pytest.approx(0.03) and made["512"] == 0.0  # it never rises
+
+
+def test_ratios_of_noise_are_never_below_one():
+    made = summed_up([{"lights.coneTaps": {"1": 1.2, "2": 0.9}}], 1.0)["lights.coneTaps"]
+    assert made == {"1": 1.2, "2": 1.0, "64": 1.0}
+
+
+SETTINGS = sw.Settings(width=12, height=12, spp=4, filter="box", tile=16, effects=S.EVERYTHING,
+                       knobs={"tables.resolution": 32})  # fmt: skip
+
+
+def test_what_knobs_leave_is_measured_where_they_do_something(tmp_path):
+    """More bounces leave less of deep grooves; cone taps do nothing under an even dome."""
+    world = S.scene([S.sphere(8, 16)], [S.scratched(S.lambert(0.3), depth=75.0)], [S.dome()])
+    found = left(world, SETTINGS, ("tables.bounces", "lights.coneTaps"))
+    bounces = list(found.bias["tables.bounces"].values())
+    assert bounces[0] > 10.0 * bounces[-1] >= 0.0 and list(found.bias) == ["tables.bounces"] and not found.noisier
+    record = json.loads(write(tmp_path / "errors.json", {"ball": found}, [[0.3, 0.08, 0.02]]).read_text())
+    assert record["stages"] == ["ball"] and record["bias"]["tables.bounces"]["2000"] == 0.0
+    assert record["noise"][0] == pytest.approx(0.64) and record["noisier"] == {}
+
+
+def test_variants_of_a_stage_let_more_knobs_act():
+    ball = S.scene([S.sphere(8, 16)], [S.scratched()], [S.dome()])
+    found = variants(ball, sw.Settings(width=12, spp=4))
+    assert {name: own[2] for name, own in found.items() if name} == {"under windows": ("lights.coneTaps",)}
+    windows = under_windows(ball)
+    assert windows.lights[0].texture == 0 and windows.textures[0].pixels.max() > 10.0 * windows.textures[0].pixels.min()
+    assert round_grooves(ball).materials[0].layers[0].profile.shape == "round"
