@@ -30,10 +30,11 @@ def below(name: str, value: Value, default: Value) -> Value | None:
 
 
 def affordable(best: Mapping[str, Value], lowest: Mapping[str, Value], alone: Cost, most: float) -> Setting:
-    """Reference values of knobs that each, turned alone, take ``most`` seconds by ``alone``, or those of ``lowest``."""
+    """Reference values of knobs of tables that each, turned alone, take ``most`` seconds by ``alone``, or those of
+    ``lowest``."""
     found = dict(best)
     for name in best:
-        if not KNOBS[name].noise:
+        if KNOBS[name].place[0] == "table":
             while alone({name: found[name]}) > most:
                 lower = below(name, found[name], lowest[name])
                 if lower is None:
@@ -47,9 +48,10 @@ def shrunk(
 ) -> Setting:
     """A reference of at most ``limit`` seconds by ``cost``, or the cheapest there is.
 
-    First it has fewer samples, down to ``least``; then knobs are turned down, not below ``lowest``, the one that
-    saves most at each step; then other code is given up; then samples again, down to ``fewest``. What is left in the
-    end goes to samples.
+    First it has fewer samples, down to ``least``. Where not even the cheapest tables are enough then, other code is
+    given up. Then knobs of tables are turned down, not below ``lowest``, the one that saves most at each step, then
+    other knobs; then all of them at once, which leaves the kernel of the defaults; then samples again, down to
+    ``fewest``. What is left in the end goes to samples.
     """
     found = dict(best)
     samples, known = int(found["spp"]), dict[str, float]()
@@ -65,9 +67,16 @@ def shrunk(
             found["spp"] = max(int(found["spp"]) // 2, to)
 
     halved(min(least, samples))
-    now = seconds(found)
-    if now > limit:
-        names = [n for n in sorted(found) if n != "spp" and below(n, found[n], lowest[n]) is not None]
+    cheapest = {n: lowest[n] for n in found if KNOBS[n].place[0] == "table"}
+    if seconds(found) > limit and seconds({**found, **cheapest}) > limit:
+        plain = {n: lowest[n] if KNOBS[n].switches else value for n, value in found.items()}
+        if seconds(plain) < SAVES * seconds(found):
+            found = plain
+    for tables in (True, False):  # what others do is not even looked at where tables are enough
+        if (now := seconds(found)) <= limit:
+            break
+        names = [n for n in sorted(found) if n != "spp" and (KNOBS[n].place[0] == "table") == tables]
+        names = [n for n in names if below(n, found[n], lowest[n]) is not None]
         useful = [n for n in names if seconds({**found, n: lowest[n]}) < SAVES * now]
         while seconds(found) > limit:
             steps = [(n, lower) for n in useful if (lower := below(n, found[n], lowest[n])) is not None]
@@ -75,14 +84,9 @@ def shrunk(
                 break
             name, lower = min(steps, key=lambda step: seconds({**found, step[0]: step[1]}))
             found[name] = lower
-    samples_alone = {"spp": found["spp"]}
-    for plain in (  # the kernel of the defaults in the end, which is there already
-        {n: lowest[n] if KNOBS[n].switches else value for n, value in found.items()} | samples_alone,
-        dict(lowest) | samples_alone,
-    ):
-        plain = {n: plain[n] for n in found}
-        if seconds(found) > limit and seconds(plain) < SAVES * seconds(found):
-            found = plain
+    plain = {n: value if n == "spp" else lowest[n] for n, value in found.items()}
+    if seconds(found) > limit and seconds(plain) < SAVES * seconds(found):
+        found = plain
     halved(min(fewest, samples))
     while 2 * int(found["spp"]) <= samples and seconds({**found, "spp": 2 * int(found["spp"])}) <= limit:
         found["spp"] = 2 * int(found["spp"])
