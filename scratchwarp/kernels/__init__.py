@@ -7,6 +7,7 @@ Files (host):
     stamp           a number that changes with the device code
     geometry        instances -> world triangles and their hierarchy
     material        materials and layers -> device records
+    highlights      where lights are mirrored in spots smaller than a pixel; highlight_search finds them
 Files (device):
     render_device   make_kernel(key): the kernel itself
     world_device    LightSet, ScratchSet
@@ -15,6 +16,7 @@ Files (device):
     layers_device   coverage of all layers under a footprint
     lobe_device     the lobe a sample chose
     bounce_device   choosing a lobe and going on from a surface
+    highlights_device  samples near such spots
     direct_device   light sampling and lights that rays meet
 """
 

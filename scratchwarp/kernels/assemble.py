@@ -21,7 +21,7 @@ from ..scene.digest import digest
 from ..scene.light import Light as LightRecord
 from ..scratches import KINDS, curves
 from ..scratches.knobs import FOOTPRINTS
-from . import geometry, glints, grooves, maps, material
+from . import geometry, glints, grooves, highlights, maps, material
 from .camera_device import CameraData
 from .key import KernelKey
 from .parts import Parts
@@ -88,6 +88,7 @@ def kernel_key(scene: Scene, plan: EffectPlan) -> KernelKey:
         light_multipliers=on("lights.multipliers"),
         mesh_lights="mesh" in kinds,
         path=on("indirect"),
+        highlights=on("highlights"),
         **_glint_fields(plan),
         grooves=on("grooves"),
         groove_crossings=on("grooves") and on("grooves.crossings"),
@@ -277,5 +278,16 @@ def assemble(
     )
     scratch_set.grooves = cut.arrays
     numbers = dict(cut.numbers)
-    inputs = (camera_data(scene, plan), shape.arrays, stuff.arrays, scratch_set, light_set)
+    camera = camera_data(scene, plan)
+    if key.highlights:
+        corners = packed.arrays.triangles.numpy() if key.mesh_lights else np.zeros((0, 3))
+        light_set.highlights, numbers["highlights"] = highlights.pack(
+            highlights.View(camera, key.orthographic),
+            plan,
+            shape,
+            stuff.arrays.materials,
+            highlights.lamps(key.lights, table, starts, corners),
+            device,
+        )
+    inputs = (camera, shape.arrays, stuff.arrays, scratch_set, light_set)
     return Assembled(key, inputs, (shape, stuff, packed, sets, sparkle, responding, cut), packed.warnings, numbers)

@@ -21,6 +21,7 @@ class KernelKey:
         light_links: some light picks what it lights.
         light_multipliers: some light's diffuse or specular multiplier is not 1.
         mesh_lights: some geometry is a light. path: indirect bounces.
+        highlights: those smaller than a pixel are drawn from.
         responses: kinds of response over solid angle, of scratches or bases.
         glints: some scratches diffract. glint_segments: explicit ones; glint_bands: regular patterns.
         glint_lists, glint_hierarchy: pieces are found by triangle, in a hierarchy, or either by what a footprint needs.
@@ -63,6 +64,7 @@ class KernelKey:
     light_multipliers: bool = False
     mesh_lights: bool = False
     path: bool = False
+    highlights: bool = False
     responses: tuple[str, ...] = ()
     glints: bool = False
     glint_segments: bool = False

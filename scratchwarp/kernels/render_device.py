@@ -4,7 +4,6 @@ from functools import lru_cache
 
 import warp as wp
 
-from ..optics.filters_device import filter_offset_blackman_harris, filter_offset_box, filter_offset_gaussian
 from ..optics.frames_device import Frame, to_local
 from ..optics.hash_device import pcg_hash, pixel_seed
 from ..optics.sobol_device import sobol_2d
@@ -26,17 +25,13 @@ from .geometry_device import (
 from .glint_paths_device import way_taken
 from .glints_device import left_of_base, less_specular, make_glints
 from .grooves_device import PARTS, make_grooves
+from .highlights_device import highlights_of, make_place
 from .key import KernelKey
 from .lobe_device import Lobe, largest, luminance
 from .material_device import MaterialArrays
 from .stamp import stamp
 from .world_device import LightSet, ScratchSet
 
-FILTERS = {
-    "box": filter_offset_box,
-    "gaussian": filter_offset_gaussian,
-    "blackmanHarris": filter_offset_blackman_harris,
-}
 # Sample dimensions: pair 0 the filter, 1 the lens, then for each surface OWN pairs and one a light.
 OWN_PAIRS = 4
 
@@ -46,7 +41,7 @@ def make_kernel(key: KernelKey):
     """The render kernel of a key; the same key gives the same kernel."""
     number = stamp(key)
     camera_ray = orthographic_ray if key.orthographic else perspective_ray
-    filter_offset = FILTERS[key.filter]
+    place_of = make_place(key.filter, key.highlights)
     base_at, opacity_at, emission_at, frame_at, rotated = make_base_at(key)
     transmittance = make_transmittance(key, opacity_at)
     direct, seen = make_direct(key, transmittance)
@@ -73,10 +68,21 @@ def make_kernel(key: KernelKey):
         py = window.y0 + line
         seed = pixel_seed(px, py, window.seed)
         nlights = lights.starts[wp.static(len(key.lights))]
+        own_seed = seed
+        near = wp.vec2i(0, 0)
+        ways = int(1)
+        bright = float(0.0)
+        if wp.static(key.highlights):
+            near = highlights_of(lights.highlights, px, py)
+            ways = wp.where(near[1] > near[0], 2, 1)
 
-        for sample in range(window.first, window.first + window.count):
-            index = wp.uint32(sample)
-            jitter = wp.static(filter_offset)(sobol_2d(index, 0, seed), window.filter_width)
+        for trial in range(ways * window.count):
+            place = place_of(lights.highlights, near, window.first, trial, own_seed, window.filter_width)
+            index = place.index
+            seed = place.seed
+            extra = place.extra
+            jitter = place.at
+            weight = camera.exposure * place.weight
             lens = wp.vec2(0.0, 0.0)
             if wp.static(key.lens):
                 lens = lens_point(sobol_2d(index, 1, seed))
@@ -86,7 +92,7 @@ def make_kernel(key: KernelKey):
             reach = ray.reach - ray.start
 
             lobe = Lobe()
-            throughput = wp.vec3(camera.exposure, camera.exposure, camera.exposure)
+            throughput = wp.vec3(weight, weight, weight)
             color = wp.vec3(0.0, 0.0, 0.0)
             part_base = wp.vec3(0.0, 0.0, 0.0)
             part_scratch = wp.vec3(0.0, 0.0, 0.0)
@@ -104,7 +110,7 @@ def make_kernel(key: KernelKey):
             instance = int(-1)
             origin = start  # of the straight segment that the path is on
             gone = float(0.0)  # part of it that lies behind
-            alive = int(1)
+            alive = wp.where(weight > 0.0 or extra == 0, 1, 0)
             while alive == 1:
                 entered = depth
                 lit = wp.vec3(0.0, 0.0, 0.0)  # what this surface reflects
@@ -152,12 +158,11 @@ def make_kernel(key: KernelKey):
                                 tangent = interpolate_tangent(g, s)
                         frame = frame_at(g, arrays, m, s, tangent, wo)
                         # edges of the footprint in the triangle's plane
-                        step_x = camera.right * (camera.pixel_x * camera.footprint)
-                        step_y = camera.up * (-camera.pixel_y * camera.footprint)
+                        far = float(1.0)
                         if wp.static(not key.orthographic):
                             far = (traveled + (gone + s.t)) / wp.length(ray.raw)
-                            step_x = step_x * far
-                            step_y = step_y * far
+                        step_x = far * (camera.pixel_x * camera.footprint) * camera.right
+                        step_y = far * (-camera.pixel_y * camera.footprint) * camera.up
                         if depth > 0:
                             step_y = frame.y * wp.length(step_y)
                             step_x = frame.x * wp.length(step_x)
@@ -248,21 +253,9 @@ def make_kernel(key: KernelKey):
                                     clear = through
                                     through = 0.0
                             lobe = choose(
-                                g,
-                                scratches,
-                                m,
-                                s,
-                                frame,
-                                base,
-                                wo,
-                                through,
-                                passing,
-                                step_x,
-                                step_y,
-                                u_lobe,
-                                u_more,
+                                g, scratches, m, s, frame, base, wo, through, passing, step_x, step_y, u_lobe, u_more,
                                 resolved,
-                            )
+                            )  # fmt: skip
                             received = wp.vec4(0.0, 0.0, 0.0, 0.0)
                             out = Scatter()
                             grooved = int(0)
@@ -339,7 +332,7 @@ def make_kernel(key: KernelKey):
                                     out.pdf = -1.0
                                     out.direction = way
                                     step = turn[1] * carried
-                            if depth == 0:
+                            if depth == 0 and extra == 0:
                                 film.normal[line, column] = film.normal[line, column] + frame.n
                                 film.albedo[line, column] = film.albedo[line, column] + base_albedo(
                                     base, to_local(frame, wo)
@@ -387,13 +380,20 @@ def make_kernel(key: KernelKey):
                 film.base[line, column] = film.base[line, column] + part_base
                 film.scratches[line, column] = film.scratches[line, column] + part_scratch
                 y = luminance(color)
+                if wp.static(key.highlights):
+                    # of a pair together
+                    y += float(extra) * bright
+                    bright = y
+                    y = wp.where(extra == ways - 1, y, 0.0)
                 film.square[line, column] = film.square[line, column] + y * y
             else:
+                bright = 0.0
                 film.invalid[line, column] = film.invalid[line, column] + 1
             if wp.static(key.opacity):
                 if alpha == 0.0:
                     alpha = 1.0 - veil
-            film.alpha[line, column] = film.alpha[line, column] + alpha
+            if extra == 0:
+                film.alpha[line, column] = film.alpha[line, column] + alpha
             film.rays[line, column] = film.rays[line, column] + rays
 
     return render_pixels

@@ -10,6 +10,7 @@ from ..scratches.layer_device import LayerData
 from ..scratches.variation_device import VariationData
 from .glint_arrays_device import GlintArrays
 from .groove_arrays_device import GrooveArrays
+from .highlights_device import HighlightArrays
 from .maps_device import MapSet
 
 wp.set_module_options({"enable_backward": False})
@@ -25,6 +26,7 @@ class LightSet:
     arrays: LightArrays
     taps: int  # look-ups along a cone into a light that is not even
     tap_width: float  # share of their distance over which an image is averaged
+    highlights: HighlightArrays  # where they are mirrored in spots smaller than a pixel
 
 
 @wp.struct

@@ -64,3 +64,32 @@ def blackman_harris_quantile(u: float) -> float:
 def filter_offset_blackman_harris(u: wp.vec2, width: float) -> wp.vec2:
     """Four-term Blackman-Harris window over the support; its standard deviation is ``width`` / 7.22."""
     return wp.vec2(blackman_harris_quantile(u[0]) * width, blackman_harris_quantile(u[1]) * width)
+
+
+@wp.func
+def filter_density_box(at: wp.vec2, width: float) -> float:
+    """Density of ``filter_offset_box`` at an offset [1 / pixel^2]."""
+    return wp.where(wp.max(wp.abs(at[0]), wp.abs(at[1])) <= 0.5 * width, 1.0 / (width * width), 0.0)
+
+
+@wp.func
+def filter_density_gaussian(at: wp.vec2, width: float) -> float:
+    """Density of ``filter_offset_gaussian``."""
+    x = 6.0 / width * at
+    # 36 / (2 pi 0.9973^2)
+    inside = wp.where(wp.max(wp.abs(x[0]), wp.abs(x[1])) <= 3.0, 5.760641, 0.0)
+    return inside / (width * width) * wp.exp(-0.5 * wp.dot(x, x))
+
+
+@wp.func
+def blackman_harris_density(t: float) -> float:
+    """Density over the full support [-0.5, 0.5]."""
+    angle = _TWO_PI * t
+    waves = _BH1 * wp.cos(angle) + 2.0 * _BH2 * wp.cos(2.0 * angle) + 3.0 * _BH3 * wp.cos(3.0 * angle)
+    return wp.where(wp.abs(t) <= 0.5, wp.max(1.0 + _TWO_PI * waves, 0.0), 0.0)
+
+
+@wp.func
+def filter_density_blackman_harris(at: wp.vec2, width: float) -> float:
+    """Density of ``filter_offset_blackman_harris``."""
+    return blackman_harris_density(at[0] / width) * blackman_harris_density(at[1] / width) / (width * width)

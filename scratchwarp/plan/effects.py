@@ -11,7 +11,17 @@ import numpy as np
 
 from ..lights.registry import MODELS
 from ..reflectance.responses import RESPONSES
-from ..scene import DistantLight, Material, PreviewSurface, Scene, ScratchSurface, Settings, SphereLight, TextureInput
+from ..scene import (
+    DistantLight,
+    DomeLight,
+    Material,
+    PreviewSurface,
+    Scene,
+    ScratchSurface,
+    Settings,
+    SphereLight,
+    TextureInput,
+)
 from ..scene.light import Light
 from ..scratches import KINDS, ORIENTED
 from .choice import LayerPlan, ResponsePlan, TablePlan
@@ -19,6 +29,8 @@ from .groove_effects import GROOVE_EFFECTS
 from .occlusion import can_occlude
 from .wave_effects import WAVE_EFFECTS
 
+MOST_SMOOTH = 0.03
+"""GGX alpha up to which surfaces are polished."""
 Answer = tuple[bool, str, tuple[str, ...]]
 
 
@@ -235,6 +247,23 @@ def _lens(f: Facts) -> Answer:
     return True, f"aperture radius {c.lens_radius:.3g} m", (c.path,)
 
 
+def _polished(m: Material) -> bool:
+    s = m.surface
+    if isinstance(s, ScratchSurface):
+        return s.base != "diffuse" and s.roughness <= MOST_SMOOTH
+    coat = s.clearcoat_roughness if _positive(s.clearcoat) else s.roughness
+    return any(not isinstance(r, TextureInput) and r * r <= MOST_SMOOTH for r in (s.roughness, coat))
+
+
+def _highlights(f: Facts) -> Answer:
+    found = [m.path for m in f.materials if m.path not in f.replaced and _polished(m)]
+    if not any(not isinstance(light, DomeLight) for light in f.scene.lights):
+        return False, "no light but domes", ()
+    if _lens(f)[0]:
+        return False, "a lens blurs them", ()
+    return _answer(found, "polished: highlights smaller than a pixel are sampled by themselves", "nothing is polished")
+
+
 EFFECTS: dict[str, Callable[[Facts], Answer]] = {
     "scratches": _scratches,
     **{f"scratches.{kind}": _distribution(kind) for kind in KINDS},
@@ -285,4 +314,5 @@ EFFECTS: dict[str, Callable[[Facts], Answer]] = {
     "shadows": _shadows,
     "indirect": _indirect,
     "lens": _lens,
+    "highlights": _highlights,
 }

@@ -27,7 +27,7 @@ RESPONDING = {response.effect for response in RESPONSES.values()}
 EVERYTHING = {
     name: True
     for name in EFFECTS
-    if name.split(".")[0] in ("lights", "base", "scratches", "shadows", "lens", "indirect")
+    if name.split(".")[0] in ("lights", "base", "scratches", "shadows", "lens", "highlights", "indirect")
     and name not in ("lights.multipliers", "scratches.curves", "scratches.sumCoverage", "scratches.stencil")
     and name not in RESPONDING
 } | {"lights.closedForm": False, "grooves.handover": False}

@@ -152,6 +152,8 @@ WAVY = {"distribution": "crosshatch", "width": 1e5, "depth": 2e4, "pitch": 3e5, 
 ON = "forced on"
 EXTENT = [LAMP]
 SCRATCHED = world(scratched())
+POLISHED = replace(ROUGH, roughness=0.1)
+BULBS = [SphereLight(path="/l", radiance=(900, 900, 900), center=(0, 3, -4), radius=0.02), scenes.dome(0.3)]
 GLOWING = MeshLight(path="/glow", radiance=(2, 2, 2), instance=0)
 
 
@@ -233,6 +235,7 @@ FIELDS = {
     "shadows": "shadows",
     "indirect": "path",
     "lens": "lens",
+    "highlights": "highlights",
 }
 """Effect -> the fields of the kernel's key that differ: what it brings, and what it brings with it."""
 CASES: dict[str, Case] = {
@@ -335,5 +338,6 @@ CASES: dict[str, Case] = {
                     where="light"),
     "indirect": Case(world(), world(), where="light", only_with={"integrator": "path"}),
     "lens": Case(world(camera=scenes.camera(30.0, lens_radius=0.2, focus_distance=9.0)), world(), where="image"),
+    "highlights": Case(world(Material("/mat", POLISHED), BULBS), world(Material("/mat", ROUGH), BULBS), grows=True),
 }  # fmt: skip
 assert {r.effect for r in RESPONSES.values()} <= set(CASES)
