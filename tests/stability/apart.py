@@ -14,20 +14,11 @@ import time
 from dataclasses import asdict
 from pathlib import Path
 
-from .fuzz import COMPILING, LIMIT, Outcome, every, plain, run_one
+from .fuzz import COMPILING, LIMIT, Outcome, every, plain, run_one, spent
 
 PATIENCE = 2 * LIMIT + 2 * COMPILING
 """Seconds of its own that a process may take over a stage: what the alarm allows, compiling, and once more as shipped;
 twenty times as long by the clock."""
-
-
-def spent(number: int) -> float:
-    """Seconds that a process took of a processor; nothing where the system does not say."""
-    try:
-        fields = Path(f"/proc/{number}/stat").read_text().rpartition(")")[2].split()
-    except OSError:
-        return 0.0
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 class Apart:

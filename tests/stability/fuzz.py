@@ -14,6 +14,7 @@ import contextlib
 import importlib
 import io
 import json
+import os
 import re
 import resource
 import shutil
@@ -218,6 +219,15 @@ def _as_shipped(argv):
     return None if done.returncode in (-signal.SIGKILL, -signal.SIGXCPU) else (done.returncode, done.stderr)
 
 
+def spent(number: int) -> float:
+    """Seconds that a process took of a processor; nothing where the system does not say."""
+    try:
+        fields = Path(f"/proc/{number}/stat").read_text().rpartition(")")[2].split()
+    except OSError:
+        return 0.0
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
 def _verdict(status, said, folder, before, bench):
     after = {p.name for p in folder.iterdir()}
     lines = [line for line in said.strip().splitlines() if line]
@@ -235,16 +245,35 @@ def _verdict(status, said, folder, before, bench):
     return "refused", last
 
 
+def command(rng, folder):
+    """(arguments of the command line, whether under an even sky alone) for the stage of a number, once it is there."""
+    furnace = bool(rng.integers(4) == 0)
+    argv = ["render", str(folder / "stage.usda"), str(folder / "out.exr"), "--imageWidth", "16", "--spp", "2"]
+    argv += ["--threads", "1", "--filter", "box", *COARSE]
+    argv += [["--integrator", "path", "--maxDepth", "3"], [], ["--frames", "2"], ["--frames", "4"]][rng.integers(4)]
+    return argv, furnace
+
+
+def run_shipped(seed):
+    """The stage of a number by the command line alone."""
+    folder = Path(tempfile.mkdtemp(prefix="scratchwarp-fuzz-"))
+    try:
+        argv, _ = command(write_stage(seed, folder), folder)
+        before = {p.name for p in folder.iterdir()}
+        shipped = _as_shipped(argv)
+        return Outcome(seed, *(_verdict(*shipped, folder, before, None) if shipped else ("hang", "as shipped")))
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
 def run_one(seed, folder, compiled=None, kernels=24, wanted=every):
     """Render the stage of a number into a folder of its own; ``compiled``: kernels there are already."""
     started = time.perf_counter()
     folder = Path(folder)
     rng = write_stage(seed, folder)
     before = {p.name for p in folder.iterdir()}
-    bench = Bench(kernels, set() if compiled is None else compiled, wanted, furnace=rng.integers(4) == 0)
-    argv = ["render", str(folder / "stage.usda"), str(folder / "out.exr"), "--imageWidth", "16", "--spp", "2"]
-    argv += ["--threads", "1", "--filter", "box", *COARSE]
-    argv += [["--integrator", "path", "--maxDepth", "3"], [], ["--frames", "2"], ["--frames", "4"]][rng.integers(4)]
+    argv, furnace = command(rng, folder)
+    bench = Bench(kernels, set() if compiled is None else compiled, wanted, furnace=furnace)
 
     def late(*_):
         raise Hang
@@ -289,8 +318,10 @@ def inside(first, count, kernels, report, keep=None):
                 shutil.rmtree(folder, ignore_errors=True)
 
 
-def batches(first, count, kernels, report, stall=1800.0):
-    """The same in processes of their own: one that dies or stalls costs the stage that it was at, which fails."""
+def batches(first, count, kernels, report, stall=6.0 * LIMIT):
+    """The same in processes of their own: one that dies costs the stage that it was at, which fails. One that takes
+    more than ``stall`` seconds over a stage, in a kernel that hears no alarm, is ended, and the stage rendered by the
+    command line alone."""
     done, log = 0, Path(tempfile.mkdtemp(prefix="scratchwarp-fuzz-")) / "log"
     while done < count:
         log.write_text("")
@@ -298,21 +329,23 @@ def batches(first, count, kernels, report, stall=1800.0):
         argv += ["--seed", str(first + done), "--count", str(min(200, count - done))]
         with log.open("a") as out:
             child = subprocess.Popen(argv, stdout=out, stderr=subprocess.DEVNULL)
-        told, heard = 0, time.monotonic()
+        told, heard, stalled = 0, 0.0, False
         while True:
             over = child.poll() is not None
             lines = log.read_text().splitlines()
             for line in lines[told:] if over else lines[told : max(len(lines) - 1, told)]:
                 report(Outcome(**json.loads(line)))
-                told, heard = told + 1, time.monotonic()
+                told, heard = told + 1, spent(child.pid)
             if over:
                 break
-            if time.monotonic() - heard > stall:
+            if spent(child.pid) - heard > stall:
+                stalled = True
                 child.kill()
             time.sleep(0.5)
         done += told
         if child.returncode != 0 and done < count:
-            report(Outcome(first + done, "crash" if child.returncode != -9 else "hang", f"status {child.returncode}"))
+            failed = Outcome(first + done, "crash", f"status {child.returncode}")
+            report(run_shipped(first + done) if stalled else failed)
             done += 1
 
 
