@@ -64,7 +64,7 @@ def explain(args: Command) -> int:
     """Print which effects STAGE calls for, and why; what they cost where asked for."""
     import scratchwarp as sw
 
-    from .plan.cost import forecast
+    from .plan.cost import forecast, slow
 
     scene = sw.read(args.stage, **arguments.reading(args))
     _warn(scene.warnings, set(), args.quiet)
@@ -74,10 +74,12 @@ def explain(args: Command) -> int:
         from .kernels.groove_memory import described, taken
 
         laid = taken(scene, plan)
-    cost = forecast(scene, plan) if args.cost else None
+    predicted = forecast(scene, plan)
+    cost, long = predicted if args.cost else None, [said] if (said := slow(predicted, plan)) else []
+    _warn(long, set(), args.quiet)
     if args.json:
         effects = {n: {"enabled": e.enabled, "reason": e.reason, "prims": e.prims} for n, e in plan.effects.items()}
-        warnings = scene.warnings + plan.warnings
+        warnings = [*scene.warnings, *plan.warnings, *long]
         row = {"stage": args.stage, "warnings": warnings, "effects": effects}
         row |= {"grooves": laid} if laid else {}
         print(json.dumps(row | ({"cost": cost.record()} if cost else {}), default=_plain))

@@ -51,6 +51,6 @@ def renderer(monkeypatch):
     fake = Renderer()
     for name in ("read", "make_plan", "render"):
         monkeypatch.setattr(sw, name, getattr(fake, name))
-    priced = SimpleNamespace(record=lambda: {"trace": 1.0}, text=lambda stats: "trace 1 s")
+    priced = SimpleNamespace(record=lambda: {"trace": 1.0}, text=lambda stats: "trace 1 s", seconds=1.0)
     monkeypatch.setattr(cost, "forecast", lambda scene, plan: priced)
     return fake

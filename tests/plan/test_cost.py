@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import scratchwarp as sw
-from scratchwarp.plan.cost import forecast, models
+from scratchwarp.plan.cost import forecast, models, slow
 from scratchwarp.plan.cost.aim import BIAS_SHARE, QUALITY_SHARE, aim, suited, wanted
 from scratchwarp.plan.cost.footprints import footprints
 from scratchwarp.plan.cost.models import Costs, Errors
@@ -78,6 +78,16 @@ def test_a_forecast_adds_up_and_says_so():
     said = found.text({"simulate": 1.0, "trace": 2.0, "compile": 3.0})
     assert "lights.dome" in said and "a factor of 1.5" in said and "took 2 s" in said
     assert forecast(world(), replace(made, settings=replace(made.settings, threads=2)), ONE).seconds < found.seconds
+
+
+def test_what_takes_long_is_warned_of():
+    made = plan(spp=4)
+    found = forecast(world(), made, ONE)
+    assert slow(found, made) == ""
+    long = replace(found, effects={("trace", "scratches.table"): 6000.0, ("trace", "camera"): 6000.0 / 9.0})
+    said = slow(long, made)
+    assert "about 1.1e+02 minutes" in said and "90 % of them to trace scratches.table" in said
+    assert "--spp" in said and "tables.rays" in said and "diffraction" not in said
 
 
 def test_every_effect_with_a_price_is_an_effect_or_a_part_of_every_render():

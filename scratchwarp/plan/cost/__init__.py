@@ -10,7 +10,7 @@ Files:
     aim       the cheapest values of all knobs whose predicted error is below the one asked for
 """
 
-from .forecast import Forecast, forecast
+from .forecast import Forecast, forecast, slow
 from .shares import LIGHT, SET, shares
 
-__all__ = ["LIGHT", "SET", "Forecast", "forecast", "shares"]
+__all__ = ["LIGHT", "SET", "Forecast", "forecast", "shares", "slow"]

@@ -8,10 +8,13 @@ import numpy as np
 
 from ...scene import Scene
 from ..choice import EffectPlan
+from ..knobs import acting, value
 from .models import Costs, costs
 from .work import work
 
 PARTS = ("simulate", "build", "trace")
+SLOW = 900.0
+"""Predicted seconds of an image from which on ``explain`` warns."""
 
 
 @dataclass(frozen=True)
@@ -76,6 +79,24 @@ class Forecast:
                 lines.append(f"{part}: predicted {self.part(part):.3g} s, took {taken[name]:.3g} s")
             lines.append(f"build and compile took {taken['compile']:.3g} s")
         return "\n".join(lines)
+
+
+def slow(cost: Forecast, plan: EffectPlan) -> str:
+    """What takes so long, and what to do about it; "" where an image takes less than ``SLOW``."""
+    if cost.seconds < SLOW:
+        return ""
+    (part, effect), most = max(cost.effects.items(), key=lambda row: row[1])
+    room = effect.split(".")[0]
+    turned = [
+        name
+        for name, knob in acting(plan).items()
+        if any(e.split(".")[0] == room for e in knob.effects)
+        and isinstance(knob.values[0], int)
+        and value(plan.settings.knobs, name) != knob.values[0]
+    ]
+    said = f"about {cost.seconds / 60.0:.2g} minutes are predicted, {100.0 * most / cost.seconds:.0f} % of them to "
+    said += f"{part} {effect}: fewer samples (--spp) or pixels (-w), --quality draft"
+    return said + (f", or a lower {' or '.join(turned)} (--knob) take less" if turned else " take less")
 
 
 def forecast(scene: Scene, plan: EffectPlan, prices: Costs | None = None, seen: np.ndarray | None = None) -> Forecast:
