@@ -1,0 +1,28 @@
+"""More grooves than there is room for, on several surfaces: counted and refused before they are laid out."""
+
+from dataclasses import replace
+
+import pytest
+
+import scratchwarp as sw
+from scratchwarp.kernels import geometry, grooves, kernel_key
+
+from .effect_cases import SUN, scratched, world
+
+
+def packed(scene):
+    plan = sw.make_plan(scene, sw.Settings(width=8, height=8, spp=1))
+    shape = geometry.pack(scene, True, False, {}, "cpu")
+    return grooves.pack(scene, plan, kernel_key(scene, plan), shape)
+
+
+def test_grooves_of_all_surfaces_count_together(monkeypatch):
+    """The first takes most of what there is room for; the second is told how much of it is left."""
+    one = scratched(model="groove", distribution="random", coverage=0.3)
+    other = replace(one, path="/other", layers=tuple(replace(x, prim="/other", seed=7) for x in one.layers))
+    scene = world(one, [SUN], right=other)
+    both, alone = (packed(x).numbers["groove_paths"] for x in (scene, world(one, [SUN])))
+    assert both > alone
+    monkeypatch.setattr(grooves, "MOST_PATHS", both - 1)
+    with pytest.raises(ValueError, match=rf"/other layer .* grooves, more than {both - 1 - alone}; set its model"):
+        packed(scene)
