@@ -227,7 +227,21 @@ SCENES = {
         f"{_HERE}/test_late_effects.py::test_pairs_of_any_size_and_light",
         "render/test_diffraction_pairs.py::test_never_negative",
     ),
-    "stages damaged at random": (f"{_HERE}/test_fuzz.py::test_damaged_stages",),
+    "more scratches than there is room or time for": (
+        f"{_HERE}/test_counts.py::test_grooves_of_all_surfaces_count_together",
+        "scratches/test_segments.py::test_too_many_pieces_are_said",
+        "reflectance/grooves/test_repeats.py::test_more_than_there_is_room_for",
+        "render/test_diffraction_crowds.py::test_those_drawn_are_on_average_all",
+    ),
+    "scratches thousands of wavelengths wide": ("kernels/test_glint_across.py::test_the_mean_of_fringes",),
+    "files that claim more than they hold": (
+        "scene/test_archive.py::test_more_than_is_there",
+        "scene/test_archive.py::test_more_than_there_is_memory_for",
+    ),
+    "stages damaged at random": (
+        f"{_HERE}/test_fuzz.py::test_damaged_stages",
+        f"{_HERE}/test_fuzz.py::test_a_stage_that_never_ends_is_a_failure",
+    ),
 }
 HARD_CASES = {**GEOMETRIC, **WAVES, **METAMORPHIC, **SCENES}
 """Every hard case -> its tests."""
