@@ -14,6 +14,8 @@ import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 
+import numpy as np
+
 from ..render.interrupt import Control, Stopped
 from ..render.progress import Progress, silent
 from ..scene import Scene, Settings
@@ -26,6 +28,8 @@ from .study import Study
 
 ROUNDS = 0.6
 """Share of a budget after which no later round of settings begins: several knobs are turned then."""
+DEAR = 0.12
+"""Share of a budget that a setting may take, with compiling, before every cheaper one of the first values is there."""
 LATE = 0.08
 """Share of a budget by which the reference may be late, without which there is no report at all. A setting is given up
 at half of that."""
@@ -125,10 +129,11 @@ class _Budgeted:
         if not study.has_reference():
             self._enough(study.best, times=2)
         study.known_reference(self.tick)
-        self._measure({}, 0, always=not study.book.rows)
-        for level in order.levels(study.ladders, study.defaults, study.best):
+        self._measure({}, 0, float("inf"))
+        first, second, third = order.levels(study.ladders, study.defaults, study.best)
+        for most, level in ((DEAR, first), (DEAR, second), (1.0, first), (1.0, second + third)):
             for knobs in (knobs for unit in level for knobs in unit):
-                self._measure(knobs, 0)
+                self._measure(knobs, 0, most * self.budget)
         for repeat in range(1, repeats):
             for knobs in [dict(row.knobs) for row in study.book.rows if row.repeat == 0 and len(row.knobs) < 2]:
                 if self.clock() - self.start < ROUNDS * self.budget:
@@ -184,15 +189,17 @@ class _Budgeted:
         self.guess.learn(predicted, self.study.first)
         self.tick()
 
-    def _measure(self, knobs: Mapping[str, Value], repeat: int, always: bool = False) -> bool:
-        """Measure a setting unless it is predicted not to fit; whether it is measured."""
+    def _measure(self, knobs: Mapping[str, Value], repeat: int, most: float | None = None) -> bool:
+        """Measure a setting unless it is predicted to take longer than ``most`` or what is left (infinite: measure it
+        in any case); whether it is measured."""
         study = self.study
         if study.book.has(knobs, repeat):
             return True
-        if (self.left <= 0.0 or self.guess.planning(knobs) > self.left) and not always:
+        limit = self.left if most is None else min(most, self.left) if np.isfinite(most) else most
+        if limit <= 0.0 or self.guess.planning(knobs) > limit:
             return False
         needed = 0.0 if not knobs and repeat == 0 and study.first is not None else self._seconds(knobs)
-        if needed > self.left and not always:
+        if needed > limit:
             return False
         predicted = self.guess.before(knobs)
         self.control = Control()
