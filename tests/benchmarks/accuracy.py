@@ -8,7 +8,7 @@ For each stage and each error from 0.1 to 0.003: the error reached against a ref
 reference values, over what was asked for; what the chosen settings cost over the cheapest settings of a grid that meet
 it, and where they lie above that, whether tables, samples or the price of a sample make the difference; predicted
 seconds over those taken. Seconds are processor time of simulating tables and tracing on one thread. References and the
-grid are kept in a folder of the system's temporary one (``--fresh`` measures them anew, as is due after changes of the
+grid, of the same seed as what is compared to it, are kept in a folder of the system's temporary one (``--fresh`` measures them anew, as is due after changes of the
 renderer). Predictions go by the prices of costs.json, or by the user's own after study --calibrate. Prints a table and
 what share of the cases keeps each bound; FOLDER gets accuracy.json.
 """
@@ -126,9 +126,9 @@ def reference_of(scene: Any, file: Path, width: int, spp: int, fresh: bool) -> R
     return Reference(whole, 0.25 * apart)
 
 
-def grid_of(scene: Any, file: Path, width: int, reference: Reference, fresh: bool) -> list[Taken]:
+def grid_of(scene: Any, file: Path, width: int, reference: Reference, seed: int, fresh: bool) -> list[Taken]:
     """Settings of tables by samples, cheapest tables first; more samples than any error needs are left out."""
-    place = kept("grid", file, width, GRID_SPP, GRID_TABLES, ERRORS, reference.noise).with_suffix(".json")
+    place = kept("grid", file, width, GRID_SPP, GRID_TABLES, ERRORS, reference.noise, seed).with_suffix(".json")
     if place.is_file() and not fresh:
         return [Taken(**row) for row in json.loads(place.read_text(encoding="utf-8"))]
     known = acting(sw.make_plan(scene, sw.Settings(width=width)))
@@ -137,7 +137,7 @@ def grid_of(scene: Any, file: Path, width: int, reference: Reference, fresh: boo
     for bins, rays in GRID_TABLES if "tables.resolution" in known else ((0, 0),):
         knobs = {"tables.resolution": bins, "tables.rays": rays} if bins else {}
         for spp in GRID_SPP:
-            row = shot(scene, reference, width=width, spp=spp, seed=SEEDS[0], knobs=knobs)[2]
+            row = shot(scene, reference, width=width, spp=spp, seed=seed, knobs=knobs)[2]
             grid.append(row)
             if row.error < 0.5 * ERRORS[-1] or all(row.seconds > cheapest(grid, e).seconds for e in ERRORS):
                 break
@@ -163,11 +163,11 @@ def measure(scene: Any, file: Path, width: int, options: Any) -> list[dict[str, 
     """Rows of one stage."""
     name, quick = file.stem, options.quick
     reference = reference_of(scene, file, width, 512 if quick else options.reference, options.fresh)
-    grid = grid_of(scene, file, width, reference, options.fresh)
     rows = []
-    for error in ERRORS[: 2 if quick else None]:
-        found = cheapest(grid, error)
-        for seed in SEEDS[: 1 if quick else None]:
+    for seed in SEEDS[: 1 if quick else None]:
+        grid = grid_of(scene, file, width, reference, seed, options.fresh)
+        for error in ERRORS[: 2 if quick else None]:
+            found = cheapest(grid, error)
             runs = [shot(scene, reference, width=width, max_error=error, seed=seed) for _ in range(REPEATS)]
             film, plan, own = min(runs, key=lambda run: run[2].seconds)
             again = [shot(scene, reference, **found.settings)[2] for _ in range(REPEATS if found.settings else 0)]
