@@ -8,9 +8,10 @@ For each stage and each error from 0.1 to 0.003: the error reached against a ref
 reference values, over what was asked for; what the chosen settings cost over the cheapest settings of a grid that meet
 it, and where they lie above that, whether tables, samples or the price of a sample make the difference; predicted
 seconds over those taken. Seconds are processor time of simulating tables and tracing on one thread. References and the
-grid, of the same seed as what is compared to it, are kept in a folder of the system's temporary one (``--fresh`` measures them anew, as is due after changes of the
-renderer). Predictions go by the prices of costs.json, or by the user's own after study --calibrate. Prints a table and
-what share of the cases keeps each bound; FOLDER gets accuracy.json.
+grid, of the same seed as what is compared to it, are kept in a folder of the system's temporary one (``--fresh``
+measures them anew, as is due after changes of the renderer). Predictions go by the prices of costs.json, or by the
+user's own after study --calibrate. Prints a table and what share of the cases keeps each bound; FOLDER gets
+accuracy.json.
 """
 
 import argparse
