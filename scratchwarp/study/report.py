@@ -120,8 +120,10 @@ class Report:
 
         What a knob does is its bias, where it has one; noise is what the least and the greatest error of a setting are
         apart, of one round twice the standard error of the mean over its pixels, and a tenth of the error at least.
+        "auto", which is what the plan takes, has no place among the values.
         """
-        rows = self.knob_rows(name)
+        default = self.about["defaults"].get(name)
+        rows = [row for row in self.knob_rows(name) if row.knobs.get(name, default) != "auto"]
         values = [row.error if row.bias is None else row.bias for row in rows]
         apart = [row.most_error - row.least_error if row.rounds > 1 else 2.0 * row.doubt for row in rows]
         slack = [max(own, 0.1 * value) for own, value in zip(apart, values, strict=True)]

@@ -65,6 +65,23 @@ def test_a_knob_falls_or_does_not(done):
     assert not replace(report, rows=rising).falls("tables.bounces")
 
 
+def test_what_the_plan_takes_has_no_place_among_the_values():
+    """With "auto" 16 wavelengths are taken: their bias lies between those of 8 and 32, and the values fall all the
+    same."""
+
+    def one(value, bias, beside=None):
+        knobs = {} if value == "auto" else {"diffraction.wavelengths": value}
+        return Measurement(knobs, 0, {"trace": 1.0}, 1.0, 0.01, bias, beside=beside)
+
+    found = [one("auto", None), one(4, 0.3), one(8, 0.1), one(32, 0.01), one(64, None, beside=0.05)]
+    about = {"defaults": {"diffraction.wavelengths": "auto"}}
+    report = Report(Report.rows_of(found), about, np.zeros((1, 1, 3)))
+    assert report.knob_rows("diffraction.wavelengths")[0].bias == 0.05
+    assert report.falls("diffraction.wavelengths")
+    found[2] = one(8, 0.4)
+    assert not Report(Report.rows_of(found), about, report.reference).falls("diffraction.wavelengths")
+
+
 def test_the_front_is_what_nothing_beats(done):
     front = done[0].pareto()
     assert front and all(a.seconds <= b.seconds and a.error >= b.error for a, b in zip(front, front[1:], strict=False))
