@@ -22,6 +22,8 @@ WIDE = 2.6
 """Widths of a footprint over which its Gaussian is looked at."""
 ACROSS = 1.128
 """Width of a circle of the area of a square of edge 1."""
+AROUND = 13.0
+"""Triangles around one, itself counted."""
 STRAY = ("random", "worley", "curves")
 """Distributions whose scratches lie one by one."""
 
@@ -53,6 +55,18 @@ def under(dense: float, length: float, across: float, side: float) -> float:
     a square micrometre; all in micrometres."""
     reach = WIDE * across
     return dense * length * reach * (1.0 + 0.6 * reach / max(min(length, 0.6 * side), 1e-12))
+
+
+def around(scene: Scene, waves: Sequence[Any], triangle: float) -> list[float]:
+    """About how many pieces a triangle and its neighbours hold of each material; edge of a triangle [m]."""
+    side = 0.6e6 * triangle
+    found = []
+    for number, own in enumerate(waves):
+        stray = [p.layer for p in own.layers if p.layer.distribution in STRAY] if own is not None else []
+        lengths = [laid(scene, number, x) for x in stray]
+        counts = [AROUND * dense * run * side * (1.0 + side / max(min(run, side), 1e-12)) for dense, run in lengths]
+        found.append(float(sum(counts)))
+    return found
 
 
 def crowds(scene: Scene, waves: Sequence[Any], footprint: float, triangle: float) -> list[float]:

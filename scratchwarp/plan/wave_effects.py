@@ -7,11 +7,14 @@ from typing import Any
 import numpy as np
 
 from ..scene import Layer, Scene, Settings
-from .crowds import crowded, crowds, lit
+from .crowds import around, crowded, crowds, lit
 from .waves import REGULAR, is_grating, looks_up, looks_up_points
 
 # circles, spirals and curves go their own way
 TURNED = ("linear", "crosshatch", "random", "worley")
+
+MOST_AROUND = 10_000.0
+"""Pieces on a triangle and its neighbours that are looked through rather than sought in a hierarchy."""
 
 Answer = tuple[bool, str, tuple[str, ...]]
 
@@ -66,6 +69,9 @@ def _lists(f: Any) -> Answer:
         return False, "nothing to find", ()
     footprint, triangle = footprint_and_triangle(f.scene, f.settings, f.waves)
     said = f"footprints of {footprint:.2g} m on triangles of {triangle:.2g} m"
+    counts = around(f.scene, f.waves, triangle)
+    if 4.0 * footprint <= triangle and max(counts, default=0.0) > MOST_AROUND:
+        return False, f"about {max(counts):.2g} pieces on a triangle and its neighbours, too many to look through", ()
     if 4.0 * footprint <= triangle:
         return True, f"pieces by triangle where the footprint fits its neighbours: {said}", found[2]
     return False, f"footprints would leave the neighbours of a triangle: {said}", ()

@@ -75,6 +75,13 @@ def test_crowds_are_counted_as_laid(coverage):
     assert counts[1] == pytest.approx(dense * 2.0 * 2.93 * (1.0 + 0.6 * 2.93 / 2.0), rel=1e-2)
 
 
+def test_lists_of_huge_triangles_are_not_looked_through():
+    """Two triangles under 24,000 scratches: a hierarchy finds those near by."""
+    asked = sw.Settings(width=64, height=64, spp=16)
+    dense, sparse = (sw.make_plan(world(density=d), asked).effects["diffraction.lists"] for d in (60.0, 0.06))
+    assert not dense.enabled and "too many to look through" in dense.reason and sparse.enabled
+
+
 def test_groups():
     asked = settings(1024)
     assert not crowded(2000.0, asked) and groups(2000.0, asked, 10**6) == 1

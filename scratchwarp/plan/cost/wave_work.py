@@ -19,7 +19,7 @@ from ...scene import (
     SphereLight,
 )
 from ..choice import EffectPlan
-from ..crowds import SEEN, STRAY, laid, lit, under
+from ..crowds import AROUND, SEEN, STRAY, laid, lit, under
 from ..knobs import value
 from ..wave_effects import footprint_and_triangle
 from .footprints import footprints, parts_of_pixel
@@ -27,8 +27,6 @@ from .footprints import footprints, parts_of_pixel
 Units = dict[tuple[str, str], float]
 SLACK = 0.03
 """About how far [rad] a lobe reaches where surfaces bend."""
-AROUND = 13.0
-"""Triangles around one, itself counted."""
 DOME = 8.0
 """What a dome takes besides its parts, in parts; seven are usual."""
 _FLAT = (RectLight, DiskLight, CylinderLight, MeshLight)
@@ -55,7 +53,8 @@ def wave_units(scene: Scene, plan: EffectPlan, shares: Sequence[float]) -> Units
                 side = 0.6 * triangle
                 piece = min(length, side)  # triangles cut scratches
                 strands = under(dense, length, prints[number].across, triangle)
-                if plan.on("diffraction.lists") and 4.0 * prints[number].across <= triangle:
+                listed = plan.on("diffraction.lists") and not plan.on("diffraction.crowds")
+                if listed and 4.0 * prints[number].across <= triangle:
                     near = AROUND * dense * length * side * (1.0 + side / max(piece, 1e-12))
                 else:
                     near = 1.5 * strands
