@@ -206,55 +206,58 @@ def make_glints(key: KernelKey, transmittance):
                 listed = True
                 if a.around_reach.shape[0] > 0:
                     listed = wp.length(reach) <= a.around_reach[s.face]
-            if wp.static(key.glint_lists):
-                if listed and a.around_starts.shape[0] > 0:
-                    for k in range(a.around_starts[s.face], a.around_starts[s.face + 1]):
-                        face = a.around[k]
-                        for found in range(a.starts[face], a.starts[face + 1]):
-                            if a.layers[a.segments[found].layer].wave == number:
-                                strand = strand_of(g, a, found, s, frame.n, step_x, step_y, sigma)
-                                if strand.length > 0.0:
-                                    layer = a.layers[strand.layer]
-                                    take_share(a, layer, strand, strand.length * strand.width, covered, taken)
-                                    if wp.static(key.glint_paths):
-                                        area_sum += strand.length * strand.width
-                                        random = random_after(random)
-                                        if unit_float(random) * area_sum < strand.length * strand.width:
-                                            drawn = strand
-                                            drawn_area = strand.length * strand.width
-                                    alone = int(1)
-                                    if wp.static(key.glint_pairs):
-                                        if wave.coherent == 1 and met < wp.static(MOST_MATES):
-                                            mates[met] = strand
-                                            met += 1
-                                            widest = wp.max(widest, strand.width)
-                                            alone = 0
-                                    if wp.static(not key.glint_pairs) or alone == 1:
-                                        lit = strand_light(
-                                            a,
-                                            strand,
-                                            lights,
-                                            g,
-                                            arrays,
-                                            p,
-                                            s.ng,
-                                            s.instance,
-                                            wo,
-                                            closeness,
-                                            known,
-                                            index,
-                                            dimension,
-                                            seed,
-                                        )
-                                        total += wp.vec3(lit[0], lit[1], lit[2])
-                                        r.rays += lit[3]
-            if wp.static(key.glint_hierarchy and not key.glint_crowds):
-                if not listed and a.bvh != wp.uint64(0):
-                    query = wp.bvh_query_aabb(a.bvh, s.p - reach, s.p + reach)
+            if wp.static(key.glint_crowds):
+                if wp.static(not key.glint_pairs):
+                    mates = wp.zeros(shape=1, dtype=Strand)
+                crowd = crowd_light(
+                    a, lights, g, arrays, s, frame.n, p, wo, step_x, step_y, reach, closeness, known, covered, taken,
+                    mates, index, dimension, seed,
+                )  # fmt: skip
+                total += crowd.radiance
+                r.rays += crowd.rays
+                if wp.static(key.glint_paths):
+                    drawn = crowd.drawn
+                    drawn_area = crowd.drawn_area
+                    area_sum = crowd.area_sum
+                if wp.static(key.glint_pairs):
+                    met = crowd.met
+                    widest = crowd.widest
+            else:
+                # pieces around the face by lists, or those near by of all
+                face_at = int(0)
+                faces_end = int(0)
+                next_piece = int(0)
+                pieces_end = int(0)
+                if wp.static(key.glint_lists):
+                    if listed and a.around_starts.shape[0] > 0:
+                        face_at = a.around_starts[s.face]
+                        faces_end = a.around_starts[s.face + 1]
+                if wp.static(key.glint_hierarchy):
+                    searched = bool(False)
                     other = int(0)
-                    while wp.bvh_query_next(query, other):
-                        if a.layers[a.segments[other].layer].wave == number:
-                            strand = strand_of(g, a, other, s, frame.n, step_x, step_y, sigma)
+                    if not listed and a.bvh != wp.uint64(0):
+                        query = wp.bvh_query_aabb(a.bvh, s.p - reach, s.p + reach)
+                        searched = True
+                going = bool(True)
+                while going:
+                    piece = int(-1)
+                    if wp.static(key.glint_lists):
+                        while next_piece >= pieces_end and face_at < faces_end:
+                            face = a.around[face_at]
+                            next_piece = a.starts[face]
+                            pieces_end = a.starts[face + 1]
+                            face_at += 1
+                        if next_piece < pieces_end:
+                            piece = next_piece
+                            next_piece += 1
+                    if wp.static(key.glint_hierarchy):
+                        if searched:
+                            if wp.bvh_query_next(query, other):
+                                piece = other
+                    going = piece >= 0
+                    if going:
+                        if a.layers[a.segments[piece].layer].wave == number:
+                            strand = strand_of(g, a, piece, s, frame.n, step_x, step_y, sigma)
                             if strand.length > 0.0:
                                 layer = a.layers[strand.layer]
                                 take_share(a, layer, strand, strand.length * strand.width, covered, taken)
@@ -273,39 +276,11 @@ def make_glints(key: KernelKey, transmittance):
                                         alone = 0
                                 if wp.static(not key.glint_pairs) or alone == 1:
                                     lit = strand_light(
-                                        a,
-                                        strand,
-                                        lights,
-                                        g,
-                                        arrays,
-                                        p,
-                                        s.ng,
-                                        s.instance,
-                                        wo,
-                                        closeness,
-                                        known,
-                                        index,
-                                        dimension,
-                                        seed,
-                                    )
+                                        a, strand, lights, g, arrays, p, s.ng, s.instance, wo, closeness, known, index,
+                                        dimension, seed,
+                                    )  # fmt: skip
                                     total += wp.vec3(lit[0], lit[1], lit[2])
                                     r.rays += lit[3]
-            if wp.static(key.glint_crowds):
-                if wp.static(not key.glint_pairs):
-                    mates = wp.zeros(shape=1, dtype=Strand)
-                crowd = crowd_light(
-                    a, lights, g, arrays, s, frame.n, p, wo, step_x, step_y, reach, closeness, known, covered, taken,
-                    mates, index, dimension, seed,
-                )  # fmt: skip
-                total += crowd.radiance
-                r.rays += crowd.rays
-                if wp.static(key.glint_paths):
-                    drawn = crowd.drawn
-                    drawn_area = crowd.drawn_area
-                    area_sum = crowd.area_sum
-                if wp.static(key.glint_pairs):
-                    met = crowd.met
-                    widest = crowd.widest
             if wp.static(key.glint_pairs):
                 if wave.coherent == 1:
                     take_all(covered, taken)
