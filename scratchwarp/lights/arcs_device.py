@@ -83,6 +83,30 @@ def add_cut(cuts: Cuts, phi: float, lo: float, hi: float) -> Cuts:
 
 
 @wp.func
+def first_cut(lo: float) -> Cuts:
+    """The lower end of the range alone."""
+    r = Cuts()
+    r.at[0] = lo
+    r.count = 1
+    return r
+
+
+@wp.func
+def end_after(cuts: Cuts, k: int, hi: float) -> float:
+    """The end of the interval that begins at cut ``k``."""
+    right = hi
+    if k + 1 < cuts.count:
+        right = cuts.at[wp.min(k + 1, wp.static(MOST_CUTS - 1))]
+    return right
+
+
+@wp.func
+def cone_at(u: wp.vec3, v: wp.vec3, n: wp.vec3, sin_theta: float, cos_theta: float, phi: float) -> wp.vec3:
+    """The cone's direction."""
+    return sin_theta * u + cos_theta * (wp.sin(phi) * v + wp.cos(phi) * n)
+
+
+@wp.func
 def above_facet(ng: wp.vec3, u: wp.vec3, v: wp.vec3, n: wp.vec3, sin_theta: float) -> wp.vec2:
     """(lo, hi) of the part of the upper half of the cone that lies above the plane across ``ng``; lo >= hi: none."""
     s = wp.sqrt(wp.max((1.0 - sin_theta) * (1.0 + sin_theta), 0.0))
@@ -187,9 +211,7 @@ def arcs_quad(
     m1 = edge_normal(b, c, turn)
     m2 = edge_normal(c, d, turn)
     m3 = edge_normal(d, a, turn)
-    cuts = Cuts()
-    cuts.at[0] = lo
-    cuts.count = 1
+    cuts = first_cut(lo)
     cuts = add_plane(cuts, m0, u, v, n, sin_theta, lo, hi)
     cuts = add_plane(cuts, m1, u, v, n, sin_theta, lo, hi)
     cuts = add_plane(cuts, m2, u, v, n, sin_theta, lo, hi)
@@ -198,11 +220,8 @@ def arcs_quad(
     r = Arcs()
     for k in range(cuts.count):
         left = cuts.at[k]
-        right = float(hi)
-        if k + 1 < cuts.count:
-            right = cuts.at[wp.min(k + 1, wp.static(MOST_CUTS - 1))]
-        middle = 0.5 * (left + right)
-        w = sin_theta * u + s * (wp.sin(middle) * v + wp.cos(middle) * n)
+        right = end_after(cuts, k, hi)
+        w = cone_at(u, v, n, sin_theta, s, 0.5 * (left + right))
         within = wp.min(wp.min(wp.dot(w, m0), wp.dot(w, m1)), wp.min(wp.dot(w, m2), wp.dot(w, m3)))
         if within > 0.0:
             r = add_arc(r, left, right)
@@ -278,8 +297,7 @@ def arcs_ellipse(
         if right > left:
             t = wp.float64(0.5) * (left + right)
             if quartic_at(q, 0, t) < wp.float64(0.0):
-                phi = float(wp.float64(2.0) * wp.atan(t))
-                w = sin_theta * u + s * (wp.sin(phi) * v + wp.cos(phi) * n)
+                w = cone_at(u, v, n, sin_theta, s, float(wp.float64(2.0) * wp.atan(t)))
                 if wp.dot(w, axis) < 0.0:
                     r = add_arc(r, float(wp.float64(2.0) * wp.atan(left)), float(wp.float64(2.0) * wp.atan(right)))
             left = right
@@ -299,6 +317,13 @@ def misses_ball(p: wp.vec3, radius: float, u: wp.vec3, sin_theta: float) -> bool
         cosine = wp.sqrt(wp.max((1.0 - sin_theta) * (1.0 + sin_theta), 0.0))
         result = across * cosine + g * sin_theta < 0.0 or wp.abs(g * cosine - across * sin_theta) * d > 1.0001 * radius
     return result
+
+
+@wp.func
+def may_meet(light: Light, p: wp.vec3, reach: float, u: wp.vec3, sin_theta: float) -> bool:
+    """Whether a flat light about ``p``, no farther than ``reach`` from there, is seen from its lit side and near to the
+    cone."""
+    return wp.dot(p, light.ez) < -1.0e-12 and light.size > 0.0 and not misses_ball(p, reach, u, sin_theta)
 
 
 @wp.func
@@ -330,8 +355,7 @@ def arcs_rect(
     """Of a rect light from its lit side."""
     r = Arcs()
     p = light.center - x
-    reach = wp.length(light.ex) + wp.length(light.ey)
-    if wp.dot(p, light.ez) < -1.0e-12 and light.size > 0.0 and not misses_ball(p, reach, u, sin_theta):
+    if may_meet(light, p, wp.length(light.ex) + wp.length(light.ey), u, sin_theta):
         r = arcs_quad(p, light.ex, light.ey, u, v, n, sin_theta, lo, hi)
     return r
 
@@ -343,8 +367,7 @@ def arcs_disk(
     """Of a disk light from its lit side."""
     r = Arcs()
     p = light.center - x
-    reach = wp.max(wp.length(light.ex), wp.length(light.ey))
-    if wp.dot(p, light.ez) < -1.0e-12 and light.size > 0.0 and not misses_ball(p, reach, u, sin_theta):
+    if may_meet(light, p, wp.max(wp.length(light.ex), wp.length(light.ey)), u, sin_theta):
         r = arcs_ellipse(p, light.ez, light.rx, light.ry, u, v, n, sin_theta, lo, hi)
     return r
 

@@ -7,13 +7,15 @@ neighbouring crossings all is side or none is, and a direction in the middle tel
 import warp as wp
 
 from scratchwarp.lights.arcs_device import (
-    MOST_CUTS,
     Arcs,
     Cuts,
     add_arc,
     add_cut,
     add_plane,
+    cone_at,
     ellipse_quartic,
+    end_after,
+    first_cut,
     misses_ball,
 )
 from scratchwarp.lights.cylinder_device import CylinderView, cylinder_view, near_line
@@ -84,9 +86,7 @@ def arcs_cylinder(
     if c.seen != 0 and not misses_ball(light.center - x, reach, u, sin_theta):
         sine = wp.sin(c.beta)
         cosine = wp.cos(c.beta)
-        cuts = Cuts()
-        cuts.at[0] = lo
-        cuts.count = 1
+        cuts = first_cut(lo)
         cuts = add_plane(cuts, sine * c.away - cosine * c.across, u, v, n, sin_theta, lo, hi)
         cuts = add_plane(cuts, sine * c.away + cosine * c.across, u, v, n, sin_theta, lo, hi)
         # the plane of an end that x lies in has no circle around it
@@ -96,11 +96,8 @@ def arcs_cylinder(
         s = wp.sqrt(wp.max((1.0 - sin_theta) * (1.0 + sin_theta), 0.0))
         for k in range(cuts.count):
             left = cuts.at[k]
-            right = float(hi)
-            if k + 1 < cuts.count:
-                right = cuts.at[wp.min(k + 1, wp.static(MOST_CUTS - 1))]
-            middle = 0.5 * (left + right)
-            w = sin_theta * u + s * (wp.sin(middle) * v + wp.cos(middle) * n)
+            right = end_after(cuts, k, hi)
+            w = cone_at(u, v, n, sin_theta, s, 0.5 * (left + right))
             within = wp.min(wp.dot(w, sine * c.away - cosine * c.across), wp.dot(w, sine * c.away + cosine * c.across))
             at = side_along(c, light, w)
             if within > 0.0 and at[0] >= 0.0 and wp.abs(at[1]) < light.half_length:
