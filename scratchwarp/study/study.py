@@ -51,6 +51,8 @@ class Study:
         checked({name: KNOBS[name].default if name in KNOBS else 0 for name in names})
         self.ladders = {n: tuple(KNOBS[n].checked(v) for v in given.get(n, self._values(n))) for n in names}
         self.best: Setting = {n: KNOBS[n].reference for n in names if n not in ("spp", "lights.cones")}
+        if self.shots.plan.on("grooves") or self.shots.plan.on("diffraction"):
+            self.best.pop("scratches.model", None)  # which would take their layers, too
         if "lights.cones" in known:
             self.best["lights.cones"] = "both"
         samples = max(self.spp, *(int(value) for value in self.ladders.get("spp", (1,))))
@@ -78,6 +80,11 @@ class Study:
         """Samples that a reference should have."""
         return min(max(64, 4 * self.spp, self.fewest_samples), int(self.wanted["spp"]))
 
+    @staticmethod
+    def half(best: Mapping[str, Value]) -> Setting:
+        """What each of the two halves of a reference is rendered with."""
+        return {**best, "spp": max(int(best["spp"]) // 2, 1)}
+
     @property
     def settings(self) -> list[Setting]:
         """The defaults, and each knob at each of its values; those that need another kernel come last."""
@@ -93,7 +100,10 @@ class Study:
 
     def default(self, name: str) -> Value:
         """What a knob is at where nothing turns it."""
-        chosen = self.shots.plan.settings.knobs.get(name)
+        settings, (where, field) = self.shots.plan.settings, KNOBS[name].place
+        chosen = settings.knobs.get(name)
+        if chosen is None and where == "settings":  # as the stage or an option has it
+            chosen = getattr(settings, field)
         return self.spp if name == "spp" else KNOBS[name].default if chosen is None else chosen
 
     def _values(self, name: str) -> tuple[Value, ...]:
@@ -144,7 +154,7 @@ class Study:
                 self._tables = [found[f"table{n}"] for n in range(len(found.files) - 2)]
             return
         samples = int(self.best["spp"])
-        half = {**self.best, "spp": max(samples // 2, 1)}
+        half = self.half(self.best)
         one = self.shots.take(half, references.SEED, progress)
         if samples > 1:
             two = self.shots.take(half, references.SEED + 1, progress, one.stock)

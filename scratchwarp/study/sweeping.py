@@ -127,7 +127,7 @@ class _Budgeted:
         study.choose(chosen)
         study.open({**chosen, "budget": self.budget})
         if not study.has_reference():
-            self._enough(study.best, times=2)
+            self._enough(study.half(study.best), times=2)
         study.known_reference(self.tick)
         self._measure({}, 0, float("inf"))
         first, second, third = order.levels(study.ladders, study.defaults, study.best)
@@ -172,14 +172,14 @@ class _Budgeted:
             study.resize(wider)
             first = order.levels(study.ladders, study.defaults, study.best)[0]
             once = self._seconds({}) * (1.0 + len(first))
-            most = self._seconds({**study.best, "spp": study.least_samples}, 2)
+            most = self._seconds(study.half({**study.best, "spp": study.least_samples}), 2)
             width = wider
             if once < 0.5 * self.budget and (most < share or wider == min(self.widths)):
                 break
         alone = references.affordable(study.best, study.lowest, self._seconds, references.ALONE * self.budget)
         samples = (study.least_samples, study.fewest_samples)
         limit = min(share, self.left)
-        made = references.shrunk(alone, study.lowest, lambda own: self._seconds(own, 2), limit, *samples)
+        made = references.shrunk(alone, study.lowest, lambda own: self._seconds(study.half(own), 2), limit, *samples)
         return {"reference": made, "width": width if self.widths else None}
 
     def _probe(self) -> None:

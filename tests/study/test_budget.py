@@ -12,7 +12,9 @@ from scratchwarp.study import order, reference, shots, sweeping
 from scratchwarp.study.measures import rel_mse
 from scratchwarp.study.page import page
 from scratchwarp.study.report import Report
+from scratchwarp.study.study import Study
 
+from ..render import scenes as S
 from .test_sweep import SETTINGS, world
 
 LADDERS = {"spp": (1, 4, 16), "tables.bounces": (1, 3, 2000), "tables.resolution": (16, 32, 64)}
@@ -181,3 +183,18 @@ def test_the_defaults_have_a_bias_of_each_knob(slow):
               for bins in (32, 64)]  # fmt: skip
     assert base.bias == pytest.approx(rel_mse(*images)) and base.bias > 0.0
     assert next(row for row in report.rows if not row.knobs).bias is None
+
+
+def test_the_reference_leaves_grooves_to_themselves():
+    """A reference of full tables alone would judge grooves that are laid out by tables."""
+    tabled = Study(world(), SETTINGS, None, None, None)
+    assert tabled.best["scratches.model"] == "fullTable"
+    laid = S.scene([S.sphere(8, 16)], [S.scratched(S.lambert(0.3), depth=75.0, model="groove")], [S.dome()])
+    grooved = Study(laid, SETTINGS, None, None, None)
+    assert grooved.shots.plan.on("grooves") and "scratches.model" not in grooved.best
+
+
+def test_a_default_is_what_the_stage_or_the_settings_say():
+    assert Study(world(), replace(SETTINGS, max_depth=3), None, None, None).default("pathDepth") == 3
+    assert Study(world(), replace(SETTINGS, cone_taps=4), None, None, None).default("lights.coneTaps") == 4
+    assert Study(world(), SETTINGS, None, None, None).default("spp") == 4
