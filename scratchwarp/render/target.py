@@ -1,12 +1,14 @@
 """How far an image still is from what more samples would make of it, and rendering until that is little enough.
 
-Two estimates are averaged: the spread of the samples of each pixel, and what the last pass changed. Samples are taken
-for independent in both; ours lie more evenly, so that both err to the safe side. The error is relative to the
-luminance that a pixel would have without noise: its own, drawn towards that of its neighbours as far as its noise
-allows, so that a pixel with one bright sample does not count as a bright pixel. Pixels that missed what is bright seem
-to have no error: their neighbours tell, so that the ratio of means over 5 x 5 pixels is looked at, too, and the larger
-of both counts. Half the standard error of the mean over pixels is added: where few of them carry most of the error,
-less is known of it.
+The spread of the samples of each pixel says what error as many independent ones would leave. Ours lie more evenly. How
+much that gains is told by what the last pass changed, all over the image: if errors squared fall as n^-p, the mean of
+n samples is off from that of the ``before`` that were there by (n / before)^p - 1 times its remaining error squared,
+and p follows. Where a few bright samples make the error nothing is gained: there both estimates are averaged. The error
+is relative to the luminance that a pixel would have without noise: its own, drawn towards that of its neighbours as far
+as its noise allows, so that a pixel with one bright sample does not count as a bright pixel. Pixels that missed what is
+bright seem to have no error: their neighbours tell, so that the ratio of means over 5 x 5 pixels is looked at, too, and
+the larger of both counts. One and a half times the standard error of the mean over pixels is added: where few of them
+carry most of the error, less is known of it; and one part in n, for few samples tell little of their spread.
 """
 
 from collections.abc import Callable, Mapping
@@ -18,6 +20,12 @@ FLOOR = 0.01
 """Share of the squared mean luminance that is added to each pixel's own: black ones do not count without end."""
 MOST = 64
 """A render with an error target has at most so many times the samples that were asked for or predicted."""
+RARE = 10.0
+"""Pixels whose surroundings have so many times the mean error owe it to rare bright samples."""
+STEEPEST = 1.25
+"""No faster than with this power do errors squared fall with samples, as far as is relied on."""
+DOUBT = 1.5
+"""Standard errors of the estimate that are added to it."""
 CLIP = 8.0
 """Neighbours brighter than so many times their median are cut there before they are averaged."""
 EDGE = 2
@@ -40,7 +48,8 @@ def remaining(sums: Mapping[str, Any], samples: int, before: tuple[np.ndarray, i
         return 0.0
     alone = square / (shrunk(sums, samples, square) ** 2 + floor)
     together = _box(square) / (_box(mean) ** 2 + floor)
-    return max(float(off.mean() + 0.5 * off.std() / np.sqrt(off.size)) for off in (alone, together))
+    found = max(float(off.mean() + DOUBT * off.std() / np.sqrt(off.size)) for off in (alone, together))
+    return found * (1.0 + 1.0 / samples)
 
 
 def on_scale(variance: np.ndarray, color: np.ndarray, noise: float) -> np.ndarray:
@@ -77,8 +86,27 @@ def squared(sums: Mapping[str, Any], samples: int, before: tuple[np.ndarray, int
     if before is None or not 0 < before[1] < samples:
         return spread
     color, count = before
-    moved = np.asarray(sums["color"], np.float64) / samples - np.asarray(color, np.float64) / count
-    return 0.5 * (spread + (moved**2).mean(axis=-1) * (count / (samples - count)))
+    change = np.asarray(sums["color"], np.float64) / samples - np.asarray(color, np.float64) / count
+    moved = (change**2).mean(axis=-1) * (count / (samples - count))
+    both = 0.5 * (spread + moved)
+    scale = 1.0 / (shrunk(sums, samples, both) ** 2 + max(FLOOR * float(mean.mean()) ** 2, 1e-300))
+    around = _box(spread) * scale
+    rare = around > RARE * around.mean()
+    usual = float((spread * scale)[~rare].sum())
+    gained = evenness(float((moved * scale)[~rare].sum()) / usual if usual > 0.0 else 1.0, samples, count)
+    return np.where(rare, both, gained * spread)
+
+
+def evenness(moved: float, samples: int, before: int) -> float:
+    """What samples leave over what independent ones would, n^(1 - p): ``moved`` is what the ones since ``before``
+    changed, 1 for independent ones (more than that is taken as it is), and falls with p; so that of all p up to
+    ``STEEPEST`` the one that fits best is taken."""
+    if moved >= 1.0:
+        return moved
+    p = np.linspace(1.0, STEEPEST, 51)
+    ratio = samples / before
+    left = float(samples) ** (1.0 - p)
+    return float(left[np.abs(left * (ratio**p - 1.0) / (ratio - 1.0) - moved).argmin()])
 
 
 def shrunk(sums: Mapping[str, Any], samples: int, square: np.ndarray) -> np.ndarray:
@@ -118,15 +146,17 @@ def _median(values: np.ndarray) -> np.ndarray:
 
 
 def later(samples: int) -> int:
-    """The next number of samples: half as many more, or a third, so that every second one has double."""
-    if samples < 2:
-        return 2
-    return samples + (samples // 3 if samples % 3 == 0 and samples > 3 else max(samples // 2, 1))
+    """The next number of samples: 2, 3, 4, 6, 8, 10, 12, 14, 16, 20 and on, four to a doubling, for then they lie
+    evenly."""
+    if samples < 4:
+        return max(samples, 1) + 1
+    step = max(1 << (samples.bit_length() - 3), 2)
+    return (samples // step + 1) * step
 
 
 def ahead(samples: int, error: float, target: float, most: int) -> int:
     """The number of samples to look at next: what is surely needed is not looked at."""
-    needed, at = 0.7 * samples * error / target if np.isfinite(error) else 0.0, later(samples)
+    needed, at = 0.85 * samples * error / target if np.isfinite(error) else 0.0, later(samples)
     while later(at) <= min(needed, 4 * samples):
         at = later(at)
     return min(at, most)

@@ -12,7 +12,8 @@ from scratchwarp.pipelines.put_on import put_on
 PRESETS = looks.presets()
 PATTERNS = ("worley", "linear", "concentric", "spiral", "variation")
 THREE = ("car-paint", "vinyl", "worn-brass")
-EFFECTS = dict.fromkeys((f"scratches.{name}" for name in PATTERNS), True) | {"diffraction": False, "grooves": False}
+EFFECTS = dict.fromkeys((f"scratches.{name}" for name in PATTERNS), True)
+EFFECTS |= dict.fromkeys(("diffraction", "grooves", "highlights"), False)
 
 
 def test_every_preset_renders(asset):

@@ -62,13 +62,14 @@ def test_samples_are_added_until_the_target_or_the_most():
     assert until(1e-12, 128, lambda: sums, more, most=200)[0] == 200
 
 
-def test_passes_grow_by_halves_and_skip_what_is_surely_too_few():
+def test_passes_grow_by_parts_and_skip_what_is_surely_too_few():
     count, seen = 1, []
     while count < 100:
         seen.append(count)
         count = target.later(count)
-    assert seen == [1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96]
-    assert target.ahead(4, 0.5, 0.1, 1000) == 12 and target.ahead(4, 0.11, 0.1, 1000) == 6
+    assert seen == [1, 2, 3, 4, 6, 8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 56, 64, 80, 96]
+    assert target.later(37) == 40 and target.later(100) == 112
+    assert target.ahead(4, 0.4, 0.1, 1000) == 12 and target.ahead(4, 0.11, 0.1, 1000) == 6
     assert target.ahead(4, 50.0, 0.1, 1000) == 16 and target.ahead(4, 50.0, 0.1, 9) == 9
 
 
