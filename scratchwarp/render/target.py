@@ -7,7 +7,7 @@ and p follows. Where a few bright samples make the error nothing is gained: ther
 is relative to the luminance that a pixel would have without noise: its own, drawn towards that of its neighbours as far
 as its noise allows, so that a pixel with one bright sample does not count as a bright pixel. Pixels that missed what is
 bright seem to have no error: their neighbours tell, so that the ratio of means over 5 x 5 pixels is looked at, too, and
-the larger of both counts. One and a half times the standard error of the mean over pixels is added: where few of them
+the larger of both counts, up to three times the other. One and a half times the standard error of the mean over pixels is added: where few of them
 carry most of the error, less is known of it; and one part in n, for few samples tell little of their spread.
 """
 
@@ -26,6 +26,8 @@ STEEPEST = 1.25
 """No faster than with this power do errors squared fall with samples, as far as is relied on."""
 DOUBT = 1.5
 """Standard errors of the estimate that are added to it."""
+MISSED = 3.0
+"""No more than so many times what the pixels tell by themselves is believed of what their neighbours tell."""
 CLIP = 8.0
 """Neighbours brighter than so many times their median are cut there before they are averaged."""
 EDGE = 2
@@ -48,8 +50,8 @@ def remaining(sums: Mapping[str, Any], samples: int, before: tuple[np.ndarray, i
         return 0.0
     alone = square / (shrunk(sums, samples, square) ** 2 + floor)
     together = _box(square) / (_box(mean) ** 2 + floor)
-    found = max(float(off.mean() + DOUBT * off.std() / np.sqrt(off.size)) for off in (alone, together))
-    return found * (1.0 + 1.0 / samples)
+    own, near = (float(off.mean() + DOUBT * off.std() / np.sqrt(off.size)) for off in (alone, together))
+    return max(own, min(near, MISSED * own)) * (1.0 + 1.0 / samples)
 
 
 def on_scale(variance: np.ndarray, color: np.ndarray, noise: float) -> np.ndarray:
