@@ -7,8 +7,9 @@ and p follows. Where a few bright samples make the error nothing is gained: ther
 is relative to the luminance that a pixel would have without noise: its own, drawn towards that of its neighbours as far
 as its noise allows, so that a pixel with one bright sample does not count as a bright pixel. Pixels that missed what is
 bright seem to have no error: their neighbours tell, so that the ratio of means over 5 x 5 pixels is looked at, too, and
-the larger of both counts, up to three times the other. One and a half times the standard error of the mean over pixels is added: where few of them
-carry most of the error, less is known of it; and one part in n, for few samples tell little of their spread.
+the larger of both counts, up to three times the other. One and a half times the standard error of the mean over pixels
+is added: where few of them carry most of the error, less is known of it; and one part in n, for few samples tell little
+of their spread.
 """
 
 from collections.abc import Callable, Mapping
