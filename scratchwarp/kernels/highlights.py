@@ -7,7 +7,7 @@ import numpy as np
 import warp as wp
 
 from ..plan import EffectPlan
-from ..plan.effects import MOST_SMOOTH
+from ..plan.effects import LEAST_FILTER, MOST_SMOOTH
 from .geometry import PackedGeometry
 from .highlight_search import LARGEST, WIDEST, Array, Found, Lamp, View, find, joined
 from .highlights_device import ROW, Highlight, HighlightArrays, promising, unhidden
@@ -41,6 +41,8 @@ def lamps(kinds: tuple[str, ...], table: Array, starts: Array, triangles: Array)
                 center = 0.5 * (own.min(0) + own.max(0))
                 radius = float(np.linalg.norm(own - center, axis=1).max())
             point = bool(row["delta"])
+            if radius <= 0.0 and not point:  # no light comes from what has no size
+                continue
             power = float(np.asarray(row["radiance"], np.float64) @ (0.2126, 0.7152, 0.0722)) * float(row["specular"])
             found.append(Lamp(center, 0.0 if point else radius, kind == "distant", point, power))
     return found
@@ -94,10 +96,11 @@ def pack(
                 part = find(corners[chosen], normals[chosen], face[chosen], lamp, view)
                 parts.append(_unhidden(part, shape, device))
     found = [part for part in parts if len(part.at)]
-    if not found:
+    width = plan.settings.filter_width or 0.0
+    if not found or width < LEAST_FILTER:
         return _packed(np.zeros(0, np.int64), np.zeros(1, np.int32), [], device), 0
     whole = joined(found)
-    return by_pixel(whole, plan.settings.filter_width or 1.0, plan.size, device), len(whole.at)
+    return by_pixel(whole, width, plan.size, device), len(whole.at)
 
 
 def _unhidden(found: Found, shape: PackedGeometry, device: str) -> Found:
@@ -149,7 +152,7 @@ def by_pixel(found: Found, width: float, size: tuple[int, int], device: str) -> 
     numbers, firsts = np.unique(number, return_index=True)
     records: list[Highlight] = []
     starts = [0]
-    for first, end in zip(firsts.tolist(), [*firsts[1:].tolist(), len(number)], strict=True):
+    for first, end in zip(firsts.tolist(), [*firsts[1:].tolist(), len(number)][: len(firsts)], strict=True):
         own: list[int] = []
         for k in range(first, end):
             # triangles next to one another find one highlight each
@@ -157,7 +160,7 @@ def by_pixel(found: Found, width: float, size: tuple[int, int], device: str) -> 
             alike = np.hypot(_cross(d, b[k]), _cross(a[k], d)) < 0.5 * area[k]
             if not alike.any() and len(own) < MOST:
                 own.append(k)
-        share = 0.5 * flux[own] / flux[own].sum() + 0.5 / len(own)
+        share = _shares(flux[own])
         for k, fraction in zip(own, share.tolist(), strict=True):
             one: Any = Highlight()
             one.center, one.a, one.b = (wp.vec2(*v[k].tolist()) for v in (center, a, b))
@@ -165,6 +168,13 @@ def by_pixel(found: Found, width: float, size: tuple[int, int], device: str) -> 
             records.append(one)
         starts.append(len(records))
     return _packed(numbers, np.array(starts, np.int32), records, device)
+
+
+def _shares(flux: Array) -> Array:
+    """Half by what they send, half alike; all alike where that cannot be told."""
+    whole = float(flux.sum())
+    alike = np.full(len(flux), 1.0 / len(flux))
+    return 0.5 * flux / whole + 0.5 * alike if 0.0 < whole < np.inf else alike
 
 
 def _cross(a: Array, b: Array) -> Array:

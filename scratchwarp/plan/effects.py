@@ -31,6 +31,8 @@ from .wave_effects import WAVE_EFFECTS
 
 MOST_SMOOTH = 0.03
 """GGX alpha up to which surfaces are polished."""
+LEAST_FILTER = 1e-3
+"""Filters narrower than so much of a pixel leave no room for samples near highlights."""
 Answer = tuple[bool, str, tuple[str, ...]]
 
 
@@ -261,6 +263,8 @@ def _highlights(f: Facts) -> Answer:
         return False, "no light but domes", ()
     if _lens(f)[0]:
         return False, "a lens blurs them", ()
+    if (f.settings.filter_width or 0.0) < LEAST_FILTER:
+        return False, "all samples of a pixel lie in its middle", ()
     return _answer(found, "polished: highlights smaller than a pixel are sampled by themselves", "nothing is polished")
 
 

@@ -50,6 +50,15 @@ def test_a_ball_reflects_alike_to_all_sides(width):
     assert found == pytest.approx(wanted, rel=0.06)
 
 
+def test_filters_without_width_have_no_room_for_highlights():
+    """Such a pixel is what its middle sees; next to the least width that counts nothing overflows."""
+    for width in (0.0, 1e-9):
+        plan = sw.make_plan(ball(), sw.Settings(filter_width=width))
+        assert not plan.on("highlights")
+    film = shoot(ball(), spp=2, filter_width=1e-3)
+    assert film.stats["invalid_samples"] == 0 and np.isfinite(film["color"]).all()
+
+
 def tray():
     """Balls and a ring of polished wire on a rough floor."""
     s, t = np.meshgrid(np.linspace(0, 2 * np.pi, 49), np.linspace(0, 2 * np.pi, 13), indexing="ij")
