@@ -10,6 +10,7 @@ from .. import profiles
 from ..scene import Layer, Material, PreviewSurface, Scene, ScratchSurface, TextureInput
 from .choice import LayerPlan
 from .profiles import cross_section
+from .waves import REGULAR
 
 COARSE = {"draft": 2, "preview": 1}
 """Thousandths of a width by which cross-sections may be off where the knob is left to the quality; else 0."""
@@ -18,6 +19,7 @@ ARCS = 8  # chords for each arc of a smooth cross-section
 NEAR, FAR = 2.0, 6.0
 SMOOTH = 0.003
 MOST = 20_000  # scratches on a surface that model auto lays out
+DEEP = 48.0  # grooves of a regular pattern that lie over one another in one place, at most
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,6 +125,19 @@ def slack_of(value: Any, quality: str | None) -> float:
     return 1e-3 * float(COARSE.get(quality or "", 0) if value == "auto" else value)
 
 
+def _told_apart(layer: Layer) -> None:
+    """ValueError where regular grooves are so much wider than they are apart that none is left of them."""
+    if layer.distribution not in REGULAR or layer.pitch <= 0.0:
+        return
+    sets = 2.0 if layer.distribution == "crosshatch" else 1.0
+    over = sets * layer.width * (1.0 + layer.width_variation) / layer.pitch
+    if over > DEEP:
+        raise ValueError(
+            f"{layer.label}: grooves of width {layer.width:g} every {layer.pitch:g} (pitch) lie over one another, "
+            f"{over:.3g} in one place, more than {DEEP:g}; make pitch greater, width smaller, or set its model to table"
+        )
+
+
 def _layer_plan(layer: Layer, slack: float) -> GrooveLayerPlan:
     drawn = np.array(cross_section(layer.profile, layer).polyline(ARCS))
     return GrooveLayerPlan(layer, profiles.simplified(drawn, slack), _own(layer), slack, len(drawn) - 1)
@@ -158,7 +173,7 @@ def plan_grooves(
     ``wanted(material, layer)``: whether it may; ``model``: in place of every layer's own; ``near(number)``: layers of a
     material of which none is wanted that are laid out where they are near; ``waves``: for each material what of it
     diffracts, or None; ``slack``: widths by which cross-sections may be off. Raises ValueError on a profile that cannot
-    be drawn.
+    be drawn, and on regular grooves far wider than they are apart.
     """
     used = {m for i in scene.instances for m in i.materials}
     made: list[GroovePlan | None] = []
@@ -167,6 +182,7 @@ def plan_grooves(
         for authored in material.layers if number in used else ():
             layer = replace(authored, model=model) if model else authored
             if wanted(material, layer):
+                _told_apart(layer)
                 own.append(_layer_plan(layer, slack))
         handover = not own and number in used
         if handover:

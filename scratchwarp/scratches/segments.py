@@ -1,7 +1,7 @@
 """Explicit scratches on a mesh: polylines -> pieces, each in the plane of one triangle, in the order of triangles."""
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -19,6 +19,8 @@ CORNER = 0.6
 PORTION = 1 << 15
 # Straight parts of polylines that are cut at once.
 STRETCHES = 1 << 18
+# Polylines of very many that are cut to tell how many pieces all of them are, before they are laid out.
+SAMPLE = 1 << 12
 # More pieces than this would take more than about 5 GB while they are made.
 MOST_PIECES = 24_000_000
 
@@ -264,24 +266,14 @@ def build(
 def _cut(
     stroke: Stroke, f: Any, mesh: wp.Mesh, slack: float, device: str, before: int, done: Callable[[int], None]
 ) -> Array:
+    if len(stroke.curves.counts) > 16 * SAMPLE and stroke.taken.any():
+        _foreseen(stroke, f, mesh, slack, device)
     s, n = stretches(stroke.curves, stroke.layer, device, done)
     row_type: Any = Segment
     if n == 0 or not stroke.taken.any():
         return np.zeros(0, row_type.numpy_dtype())
-    f.taken = wp.array(stroke.taken.astype(np.uint8), dtype=wp.uint8, device=device)
     counts: Any = wp.zeros(n, dtype=int, device=device)
-    kernel: Any
-    if stroke.curves.space == "uv":
-        faces = np.flatnonzero(stroke.taken).astype(np.int32)
-        flat = np.concatenate([f.uvs.numpy().reshape(-1, 3, 2)[faces], np.zeros((len(faces), 3, 1), np.float32)], -1)
-        over = wp.Bvh(
-            wp.array(flat.min(1), dtype=wp.vec3, device=device), wp.array(flat.max(1), dtype=wp.vec3, device=device)
-        )
-        given = [f, over.id, wp.array(faces, dtype=int, device=device)]
-        kernel = cut_in_uv
-    else:
-        given = [f, mesh.id, slack]
-        kernel = cut_on_surface
+    kernel, given, _held = _cutter(stroke, f, mesh, slack, device)
 
     def pass_over(starts: Any, out: Any, found: Callable[[int], None]) -> None:
         for first in range(0, n, STRETCHES):
@@ -311,6 +303,46 @@ def _cut(
     starts: Any = wp.array((after - counts.numpy()).astype(np.int32), dtype=int, device=device)
     pass_over(starts, out, lambda last: None)
     return out.numpy()
+
+
+def _cutter(stroke: Stroke, f: Any, mesh: wp.Mesh, slack: float, device: str) -> tuple[Any, list[Any], Any]:
+    """(kernel that cuts stretches, what it is given before those that a launch is about, what must stay alive)."""
+    f.taken = wp.array(stroke.taken.astype(np.uint8), dtype=wp.uint8, device=device)
+    if stroke.curves.space != "uv":
+        return cut_on_surface, [f, mesh.id, slack], mesh
+    faces = np.flatnonzero(stroke.taken).astype(np.int32)
+    flat = np.concatenate([f.uvs.numpy().reshape(-1, 3, 2)[faces], np.zeros((len(faces), 3, 1), np.float32)], -1)
+    over = wp.Bvh(
+        wp.array(flat.min(1), dtype=wp.vec3, device=device), wp.array(flat.max(1), dtype=wp.vec3, device=device)
+    )
+    return cut_in_uv, [f, over.id, wp.array(faces, dtype=int, device=device)], over
+
+
+def _foreseen(stroke: Stroke, f: Any, mesh: wp.Mesh, slack: float, device: str) -> None:
+    """ValueError where one of so many polylines tells that all of them are far more than ``MOST_PIECES``."""
+    curves = stroke.curves
+    counts = np.asarray(curves.counts, np.int64)
+    taken = np.arange(0, len(counts), len(counts) // SAMPLE)
+    first = (np.cumsum(counts) - counts)[taken]
+    own = counts[taken]
+    at = np.repeat(first - (np.cumsum(own) - own), own) + np.arange(own.sum())
+    sizes = {"widths": curves.widths[at], "depths": curves.depths[at]}
+    few = replace(curves, points=curves.points[at], counts=own.astype(np.int32), **sizes)
+    s, n = stretches(few, stroke.layer, device)
+    if n == 0:
+        return
+    kernel, given, _held = _cutter(stroke, f, mesh, slack, device)
+    found: Any = wp.zeros(n, dtype=int, device=device)
+    nothing: Any = wp.empty(0, dtype=Segment, device=device)
+    none: Any = wp.empty(0, dtype=int, device=device)
+    wp.launch(kernel, n, inputs=[s, *given, none, found, nothing], device=device)
+    pieces = float(found.numpy().sum(dtype=np.int64)) * len(counts) / len(taken)
+    if pieces > 1.5 * MOST_PIECES:
+        raise ValueError(
+            f"{curves.path}: its {len(counts)} scratches would be cut into about {pieces:.2g} pieces by the triangles "
+            f"that they cross, more than {MOST_PIECES}; make the scratches fewer or shorter, or set the layer's model "
+            "to table"
+        )
 
 
 def _some(s: Any, first: int, last: int) -> Stretches:

@@ -141,3 +141,11 @@ def test_too_many_pieces_are_said(monkeypatch):
     monkeypatch.setattr(segments, "MOST_PIECES", 30)
     with pytest.raises(ValueError, match="/m: .* cut into .* pieces .* more than 30; make the scratches fewer"):
         laid(ball(8, 12), MANY, np.random.default_rng(6).random((len(ball(8, 12)), 3, 2)))
+
+
+def test_far_too_many_pieces_are_foreseen(monkeypatch):
+    """A part of the scratches tells; all of them are not even made straight."""
+    monkeypatch.setattr(segments, "MOST_PIECES", 30)
+    monkeypatch.setattr(segments, "SAMPLE", 2)
+    with pytest.raises(ValueError, match="/m: its 40 scratches would be cut into about .* pieces .* more than 30"):
+        laid(ball(8, 12), MANY, np.random.default_rng(6).random((len(ball(8, 12)), 3, 2)))

@@ -16,6 +16,15 @@ def packed(scene):
     return grooves.pack(scene, plan, kernel_key(scene, plan), shape)
 
 
+@pytest.mark.parametrize("distribution", ["linear", "crosshatch", "concentric", "spiral"])
+def test_grooves_far_wider_than_they_are_apart(distribution):
+    """Nothing is left of them: refused by the plan, where 24 in one place are not."""
+    sizes = {"model": "groove", "distribution": distribution, "width": 4000.0}
+    with pytest.raises(ValueError, match=r"/mat layer .* width 4000 every 20 \(pitch\) lie over one another"):
+        sw.make_plan(world(scratched(pitch=20.0, **sizes), [SUN]), sw.Settings(width=8, height=8))
+    assert sw.make_plan(world(scratched(pitch=340.0, **sizes), [SUN]), sw.Settings(width=8, height=8)).on("grooves")
+
+
 def test_grooves_of_all_surfaces_count_together(monkeypatch):
     """The first takes most of what there is room for; the second is told how much of it is left."""
     one = scratched(model="groove", distribution="random", coverage=0.3)

@@ -18,6 +18,7 @@ ONCE = {
     310: "a camera whose far plane is a millimetre away had no matrix of depths",
     1365: "a shape's displayColor was a file",
     1404: "a shape's displayColor was one number",
+    2013: "grooves two hundred times as wide as they were apart left a ray without the pieces near it",
     2057: "a layer of grooves had curves without points",
 }
 
