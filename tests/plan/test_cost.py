@@ -13,7 +13,7 @@ from scratchwarp.plan.cost.footprints import footprints
 from scratchwarp.plan.cost.models import Costs, Errors
 from scratchwarp.plan.cost.visible import visible
 from scratchwarp.plan.cost.work import of_table, work
-from scratchwarp.scene import DistantLight, Profile, Texture, Wave
+from scratchwarp.scene import DistantLight, Profile, SphereLight, Texture, Wave
 
 from ..render import scenes as S
 
@@ -198,7 +198,25 @@ def test_scratches_that_diffract_cost_by_the_lights_that_they_see():
     dome, few = units(S.dome()), units(S.dome(), **{"diffraction.slices": 2})
     assert dome[area, "diffraction.domes"] > few[area, "diffraction.domes"] > 0.0
     assert units(SUN)["diffraction", "diffraction.points"] > 0.0
+    summed = {"diffraction.colors": "wavelengths", "diffraction.wavelengths": 12}
+    assert units(S.dome(), **summed)[area, "diffraction.domes"] == pytest.approx(12.0 * dome[area, "diffraction.domes"])
     assert dome["diffraction.segments", "diffraction.strands"] > 0.0
+
+
+def test_facets_without_tables_are_summed_node_by_node():
+    """Each facet at each wavelength, under a dome half as often as under a light with edges, under the sun not."""
+    groove = replace(S.scratched().layers[0].profile, shape="vGroove")
+    layer = replace(S.scratched().layers[0], distribution="random", density=1.0, width=2.0, depth=0.5, profile=groove)
+
+    def nodes(*lights, colors="wavelengths"):
+        scene = S.scene([S.plane()], [replace(S.scratched(), wave=Wave(), layers=(layer,))], lights)
+        knobs = {"diffraction.colors": colors, "diffraction.wavelengths": 12}
+        found = work(scene, sw.make_plan(scene, sw.Settings(width=64, height=64, spp=4, knobs=knobs)))
+        return found.each.get(("diffraction.outlines", "diffraction.nodes"), 0.0)
+
+    assert nodes(S.dome()) > 0.0 and nodes(SUN) == 0.0 and nodes(S.dome(), colors="lookup") == 0.0
+    bulb = SphereLight(path="/bulb", radiance=np.ones(3), center=np.array([1.0, 1.0, 3.0]), radius=0.1)
+    assert nodes(bulb) == pytest.approx(2.0 * nodes(S.dome()))
 
 
 def test_cheaper_values_of_knobs_are_predicted_to_be_cheaper():

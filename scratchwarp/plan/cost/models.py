@@ -17,6 +17,7 @@ FORMAT = 1
 _HERE = Path(__file__).parent
 # Nanoseconds of units that nothing measured, as they were estimated beside those that were.
 UNMEASURED = {
+    "diffraction.nodes": 10000.0,
     "base.textures": 60.0, "base.normalMaps": 80.0, "base.opacity": 900.0, "lens": 20.0, "lights.mesh": 500.0,
     "lights.cylinder": 250.0, "lights.disk": 350.0, "scratches.full": 10.0, "scratches.responses": 150.0,
     "lights.coneTaps": 75.0, "base.stencils": 100.0, "base.utia": 200.0, "base.merl": 100.0, "base.rgl": 300.0,

@@ -39,7 +39,7 @@ def wave_units(scene: Scene, plan: EffectPlan, shares: Sequence[float]) -> Units
         return found
     prints = footprints(scene, plan.size, parts_of_pixel(plan.settings))
     triangle = 1e6 * footprint_and_triangle(scene, plan.settings, plan.waves)[1]
-    lights, most = _lights(scene, plan), lit(plan.settings.knobs)
+    lights, most, colors = _lights(scene, plan), lit(plan.settings.knobs), _wavelengths(plan)
 
     def add(effect: str, unit: str, count: float) -> None:
         if count > 0.0:
@@ -68,6 +68,9 @@ def wave_units(scene: Scene, plan: EffectPlan, shares: Sequence[float]) -> Units
                 add("diffraction.bands", "diffraction.bands", share * strands)
             if plan.on("diffraction.pairs") and own.wave.summation == "coherent":
                 strands *= 0.5 * (strands + 1.0)
+            if p.outline is not None and not plan.on("diffraction.lookup"):
+                rows = max(len(rows) for rows in (p.outline, *p.others))
+                add("diffraction.outlines", "diffraction.nodes", share * strands * rows * _wide(scene) * colors)
             for unit, count in lights.items():
                 add("diffraction.areaLights" if unit != "diffraction.points" else "diffraction", unit,
                     share * strands * count)  # fmt: skip
@@ -82,7 +85,8 @@ def _lights(scene: Scene, plan: EffectPlan) -> dict[str, float]:
     for light in scene.lights:
         if isinstance(light, DomeLight):
             parts = max(int(value(plan.settings.knobs, "diffraction.slices")) - 1, 1)
-            made["diffraction.domes"] = made.get("diffraction.domes", 0.0) + (DOME + parts) / (DOME + 7.0)
+            each = 1.0 if plan.on("diffraction.lookup") else max(_wavelengths(plan), 1.0)
+            made["diffraction.domes"] = made.get("diffraction.domes", 0.0) + each * (DOME + parts) / (DOME + 7.0)
             continue
         half, polygons = _half_angle(scene, light, middle)
         unit = "diffraction.polygons" if isinstance(light, _FLAT) else "diffraction.caps"
@@ -91,6 +95,13 @@ def _lights(scene: Scene, plan: EffectPlan) -> dict[str, float]:
             unit, count = "diffraction.points", SLACK * colors
         made[unit] = made.get(unit, 0.0) + count
     return made
+
+
+def _wide(scene: Scene) -> float:
+    """Lights over which lobes of facets are summed node by node: a dome once, polygons and caps as twice that."""
+    flat = sum(not isinstance(light, DomeLight | DistantLight) and not getattr(light, "point", False)
+               for light in scene.lights)  # fmt: skip
+    return 2.0 * flat + sum(isinstance(light, DomeLight) for light in scene.lights)
 
 
 def _wavelengths(plan: EffectPlan) -> float:
