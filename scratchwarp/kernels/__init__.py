@@ -8,6 +8,7 @@ Files (host):
     geometry        instances -> world triangles and their hierarchy
     material        materials and layers -> device records
     highlights      where lights are mirrored in spots smaller than a pixel; highlight_search finds them
+    glints, grooves, maps  scratches that diffract, grooves one by one, textures -> arrays; glint_crowds: in groups
 Files (device):
     render_device   make_kernel(key): the kernel itself
     world_device    LightSet, ScratchSet
@@ -17,6 +18,7 @@ Files (device):
     lobe_device     the lobe a sample chose
     bounce_device   choosing a lobe and going on from a surface
     highlights_device  samples near such spots
+    glint*_device   scratches that diffract; groove*_device: grooves one by one
     direct_device   light sampling and lights that rays meet
 """
 

@@ -152,7 +152,8 @@ def by_pixel(found: Found, width: float, size: tuple[int, int], device: str) -> 
     numbers, firsts = np.unique(number, return_index=True)
     records: list[Highlight] = []
     starts = [0]
-    for first, end in zip(firsts.tolist(), [*firsts[1:].tolist(), len(number)][: len(firsts)], strict=True):
+    ends = np.append(firsts, len(number))[1:]
+    for first, end in zip(firsts.tolist(), ends.tolist(), strict=True):
         own: list[int] = []
         for k in range(first, end):
             # triangles next to one another find one highlight each

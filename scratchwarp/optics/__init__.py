@@ -2,7 +2,8 @@
 
 Host, NumPy: ``fresnel`` (the reflectors and their reference formulas), ``metals`` and ``metal_tables`` (measured n, k),
 ``spectra`` and ``cie_tables`` (colorimetry). Device, Warp: ``frames_device``, ``fresnel_device``,
-``microfacets_device``, ``sampling_device`` (front door to ``hash_device``, ``sobol_device`` and ``filters_device``).
+``refraction_device``, ``microfacets_device``, ``sampling_device`` (front door to ``hash_device``, ``sobol_device`` and
+``filters_device``).
 Importing this package does not import Warp.
 """
 

@@ -8,6 +8,8 @@ Files:
     cost        about what each effect costs
     layers      the scene's layers -> sublayers and the tables they share
     theta       which theta model a table needs
+    waves, wave_effects      what diffracts, and which effects that calls for; crowds: how many a sample lights
+    grooves, groove_effects  what is laid out groove by groove, and its effects; nearby: where it takes over from tables
     profiles    a ScratchProfile record -> a profile to simulate
     occlusion   whether anything can cast a shadow
     make        make_plan

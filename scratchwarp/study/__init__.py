@@ -3,7 +3,11 @@
 ``study.sweep(scene) -> Report``; ``report.pareto()``; ``report.write("out/")``.
 
 Files:
-    sweeping        renders a scene at many settings and compares with a reference
+    sweeping        renders a scene at many settings and compares with a reference, within a budget
+    study           what one sweep knows: its settings, measurements, images and reference
+    shots           one scene rendered at many settings, with what the renders share kept
+    reference       what the reference is made with, and how it is made cheaper for a budget
+    guess, order    how long the next render will take; which setting comes next
     measurement     one rendering, and the file of all of them
     measures        relative mean square error and FLIP; table_error: of the tables themselves
     calibration     prices of units of work on this machine; knob_errors: what knobs leave (both: plan/cost/*.json)

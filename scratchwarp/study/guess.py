@@ -19,8 +19,6 @@ WARM = 0.6
 """Seconds of loading a kernel that a cache has."""
 OVERHEAD = 0.05
 """Seconds of a render beside its parts: comparing images, writing them."""
-
-
 FITTED = {"scratches.farField": "stencil"}
 """Knob -> value that planning fits something for, which takes long."""
 FIT = 1.0

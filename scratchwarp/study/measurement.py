@@ -10,6 +10,7 @@ from typing import Any
 from ..scene.knob import Value
 from ..whole import whole
 
+Setting = dict[str, Value]
 PARTS = ("plan", "simulate", "build", "trace")
 
 

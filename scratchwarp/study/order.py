@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 
 from ..plan.knobs import KNOBS
 from ..scene.knob import Value
+from .measurement import Setting
 
-Setting = dict[str, Value]
 Unit = tuple[Setting, ...]
 
 

@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 
 from ..plan.knobs import KNOBS
 from ..scene.knob import Value
+from .measurement import Setting
 
 FACTOR = 4
 """Samples of the reference over those of the dearest setting."""
@@ -17,7 +18,6 @@ ALONE = 0.1
 SAVES = 0.97
 """A knob is turned down for the budget where that leaves less than this of the seconds."""
 
-Setting = dict[str, Value]
 Cost = Callable[[Mapping[str, Value]], float]
 
 

@@ -21,8 +21,6 @@ from ..scene import Scene, Settings
 from ..scene.knob import Value
 from .measurement import PARTS, setting_name
 
-Setting = dict[str, Value]
-
 
 @dataclass
 class Stock:

@@ -17,10 +17,10 @@ from ..scene.digest import digest
 from ..scene.knob import Value
 from ..whole import whole
 from . import reference as references
-from .measurement import PARTS, Measurement, Notebook, header, setting_name
+from .measurement import PARTS, Measurement, Notebook, Setting, header, setting_name
 from .measures import flip, rel_mse, uncertainty
 from .report import Report, file_name
-from .shots import Setting, Shot, Shots
+from .shots import Shot, Shots
 from .table_error import slices_of, table_error
 
 

@@ -85,7 +85,7 @@ def _lights(scene: Scene, plan: EffectPlan) -> dict[str, float]:
     for light in scene.lights:
         if isinstance(light, DomeLight):
             parts = max(int(value(plan.settings.knobs, "diffraction.slices")) - 1, 1)
-            each = 1.0 if plan.on("diffraction.lookup") else max(_wavelengths(plan), 1.0)
+            each = 1.0 if plan.on("diffraction.lookup") else _wavelengths(plan)
             made["diffraction.domes"] = made.get("diffraction.domes", 0.0) + each * (DOME + parts) / (DOME + 7.0)
             continue
         half, polygons = _half_angle(scene, light, middle)
