@@ -18,8 +18,7 @@ import numpy as np
 
 from ..kernels import assemble
 from ..plan import make_plan
-from ..plan.cost.models import FORMAT, UNMEASURED, user_file
-from ..plan.cost.shares import LIGHT, SET
+from ..plan.cost.models import FORMAT, shipped, user_file
 from ..plan.cost.work import Work, of_table, work
 from ..render.launch import film_arrays, launcher, loaded
 from ..render.progress import Progress, silent
@@ -27,21 +26,9 @@ from ..render.tables import simulate_table
 from ..render.tiles import run, tiles
 from ..scene import Scene, Settings
 from ..whole import whole
+from .price_fit import fitted, known_prices, machine_speed
 from .report import machine
 
-# Nanoseconds that a fit begins with and falls back to where no stage tells.
-PRIOR: dict[str, float] = {
-    "camera": 600.0, "camera.triangles": 500.0, "base": 150.0, "shadows": 160.0, "scratches.table": 100.0,
-    "lights.closedForm": 300.0, "lights.coneTaps": 15.0, "lights.sampled": 200.0, "diffraction.pieces": 40.0,
-    "diffraction.found": 500.0, "diffraction.strands": 300.0, "diffraction.bands": 200.0, "diffraction.points": 300.0,
-    "diffraction.caps": 3000.0, "diffraction.polygons": 10000.0, "diffraction.domes": 5000.0, "grooves.found": 300.0,
-    "grooves.rays": 300.0, "grooves.rayFacets": 30.0, "grooves.lines": 300.0, "grooves.lineFacets": 100.0,
-    "grooves.linePairs": 10.0, "build.grooves": 10000.0, "build.cells": 1000.0,
-    "tables.table": 3e7, "tables.cell": 50.0, "tables.ray": 300.0, "tables.rayBounced": 600.0,
-    "build.triangles": 3000.0, "build.pixels": 100.0, "build.kernel": 5e7, "build.strokes": 20000.0,
-    **{f"lights.{name}": float(ns) for name, ns in LIGHT.items()},
-    **{f"scratches.{name}": float(ns) for name, ns in SET.items()}, **UNMEASURED,
-}  # fmt: skip
 STAGES = (
     "ball", "plain", "panel", "gold", "plastic", "patterns", "spoon", "spoon_window", "spoon_dome", "disc", "roof",
     "grooves_parallel", "grooves_crossing", "vinyls",
@@ -49,8 +36,6 @@ STAGES = (
 """Demo stages that prices are fitted to; the others are for testing them."""
 WIDER = 2
 """Samples a pixel of a second measurement where work depends on what a sample stands for."""
-RIDGE = 0.1
-"""Weight of the prior beside that of one stage."""
 TABLE_SIZES = ((32, 16), (64, 128), (128, 32), (256, 16), (256, 512))
 """(resolution, rays) of tables that are measured besides the default."""
 VARIANTS: tuple[dict[str, bool], ...] = (
@@ -99,25 +84,6 @@ def measured(name: str, scene: Scene, settings: Settings) -> Sample:
     return Sample(name, work(scene, plan), tuple(simulated), build, trace)
 
 
-def fitted(rows: Sequence[Mapping[str, float]], seconds: Sequence[float], ridge: float = RIDGE) -> dict[str, float]:
-    """Nanoseconds of units, none below 0: least squares of relative errors, held to the prior by ``ridge``.
-
-    ``rows``: unit -> how often, of each measurement.
-    """
-    units = sorted({unit for row in rows for unit in row})
-    prior = np.array([1e-9 * PRIOR.get(unit, 100.0) for unit in units])
-    a = np.array([[row.get(unit, 0.0) for unit in units] for row in rows])
-    taken = np.maximum(np.asarray(seconds, float), 1e-6)
-    system = np.concatenate([a * prior / taken[:, None], np.sqrt(ridge) * np.eye(len(units))])
-    wanted = np.concatenate([np.ones(len(taken)), np.full(len(units), np.sqrt(ridge))])
-    normal, right = system.T @ system, system.T @ wanted
-    x = np.ones(len(units))
-    for _ in range(4000):  # coordinate descent: few unknowns, one minimum
-        for k in range(len(units)):
-            x[k] = max(0.0, x[k] + (right[k] - normal[k] @ x) / normal[k, k])
-    return {unit: float(1e9 * p * v) for unit, p, v in zip(units, prior, x, strict=True)}
-
-
 def measured_tables(scene: Scene) -> list[tuple[Mapping[tuple[str, str], float], float]]:
     """(units, processor seconds) of the first tables of a scene at other resolutions and numbers of rays."""
     plan = make_plan(scene, Settings(width=8, threads=1))
@@ -149,9 +115,10 @@ def prices(
         return {unit: n if unit.startswith("camera") else n * more for unit, n in units.items()}
 
     taken = [s.trace for s in samples]
-    later, found = 0.6, dict[str, float]()
+    known, later, found = known_prices(), shipped().indirect, dict[str, float]()
+    speed = machine_speed([counted(s, later) for s in samples], taken, known)
     for _ in range(4 if any(s.counted.indirect for s in samples) else 1):
-        found = fitted([counted(s, later) for s in samples], taken)
+        found = fitted([counted(s, later) for s in samples], taken, known=known, speed=speed)
         ratios = []
         for s in (s for s in samples if s.counted.indirect > 0.0):
             first = sum(1e-9 * found[u] * n for u, n in counted(s, 0.0).items())
@@ -161,10 +128,10 @@ def prices(
     off = [abs(np.log(s.trace / max(sum(1e-9 * found[u] * n for u, n in counted(s, later).items()), 1e-9)))
            for s in samples]  # fmt: skip
     tables = [*more_tables, *(row for s in samples for row in s.simulate)]
-    if tables:
-        found |= fitted([_plain(units) for units, _ in tables], [seconds for _, seconds in tables])
-    found |= fitted([_plain(s.counted.build) for s in samples], [s.build for s in samples])
-    return found, later, float(np.exp(np.quantile(off, 0.9)))
+    of_tables = fitted([_plain(units) for units, _ in tables], [row[1] for row in tables], known=known, speed=speed)
+    build = fitted([_plain(s.counted.build) for s in samples], [s.build for s in samples], known=known, speed=speed)
+    rest = {unit: speed * ns for unit, ns in known.items()}
+    return {**rest, **found, **of_tables, **build}, later, float(np.exp(np.quantile(off, 0.9)))
 
 
 def _depends(scene: Scene) -> list[bool]:
