@@ -55,8 +55,10 @@ def directions(scene: Scene, plan: EffectPlan, layer: Layer, shape: Any, own: Ar
         row = maps.direction_row(scene, layer.orientation_primvar, *every).reshape(-1, 3, 2)[own]
         uvs = shape.uvs.numpy().reshape(-1, 3, 2)[own]
 
+        located = locator(uvs)
+
         def by_primvar(uv: Array) -> Array:
-            face, bary = locate_all(uvs, uv)
+            face, bary = located(uv)
             found = (bary[..., None] * row[np.maximum(face, 0)]).sum(1) * (face >= 0)[:, None]
             return found * (1.0, handed)
 
@@ -79,14 +81,18 @@ def directions(scene: Scene, plan: EffectPlan, layer: Layer, shape: Any, own: Ar
     return by_texture
 
 
-def locate_all(uvs: Array, points: Array) -> tuple[Array, Array]:
-    """(triangle or -1 [n], barycentric coordinates [n, 3]) of points in uv among triangles ``[m, 3, 2]``."""
+def locator(uvs: Array) -> Callable[[Array], tuple[Array, Array]]:
+    """Points in uv ``[n, 2]`` -> (triangle or -1 [n], barycentric coordinates [n, 3]) among triangles ``[m, 3, 2]``."""
     flat = np.concatenate([uvs, np.zeros((len(uvs), 3, 1), np.float32)], -1)
     boxes: list[Any] = [wp.array(x, dtype=wp.vec3, device="cpu") for x in (flat.min(1), flat.max(1))]
     over = wp.Bvh(boxes[0], boxes[1])
     corners: Any = wp.array(np.ascontiguousarray(uvs.reshape(-1, 2), np.float32), dtype=wp.vec2, device="cpu")
-    at: Any = wp.array(np.ascontiguousarray(points, np.float32), dtype=wp.vec2, device="cpu")
-    face: Any = wp.empty(len(points), dtype=int, device="cpu")
-    bary: Any = wp.empty(len(points), dtype=wp.vec3, device="cpu")
-    wp.launch(locate, len(points), inputs=[over.id, corners, at], outputs=[face, bary], device="cpu")
-    return face.numpy(), bary.numpy()
+
+    def located(points: Array) -> tuple[Array, Array]:
+        at: Any = wp.array(np.ascontiguousarray(points, np.float32), dtype=wp.vec2, device="cpu")
+        face: Any = wp.empty(len(points), dtype=int, device="cpu")
+        bary: Any = wp.empty(len(points), dtype=wp.vec3, device="cpu")
+        wp.launch(locate, len(points), inputs=[over.id, corners, at], outputs=[face, bary], device="cpu")
+        return face.numpy(), bary.numpy()
+
+    return located

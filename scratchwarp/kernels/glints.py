@@ -17,7 +17,7 @@ from ..reflectance.diffraction.color import spectral_samples
 from ..scene import Curves, Scene
 from ..scratches.along import dealt, varied
 from ..scratches.generate import random_scratches
-from ..scratches.segments import SegmentSet, Stroke, build, surroundings
+from ..scratches.segments import SegmentSet, Stroke, build, foresee, surroundings
 from .geometry import PackedGeometry
 from .glint_arrays_device import BandData, GlintArrays, Spectrum, WaveLayer, WaveMaterial
 from .glint_crowds import Crowds
@@ -50,9 +50,12 @@ Numbered = tuple[int, int, int]
 
 
 def _strokes(
-    scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, numbers: dict[Numbered, int]
+    scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, numbers: dict[Numbered, int], device: str
 ) -> list[Stroke]:
     made: list[Stroke] = []
+    g, mesh = shape.arrays, shape.mesh
+    assert mesh is not None
+    surface = (g.points, g.uvs, g.dpdu, g.dpdv, mesh, device)
     material, instance = shape.arrays.material.numpy(), shape.arrays.instance.numpy()
     uv = shape.arrays.uvs.numpy().reshape(-1, 3, 2)
     scales = shape.arrays.pattern_scale.numpy()
@@ -76,7 +79,11 @@ def _strokes(
                     unit = (1.0, 1.0) if layer.space == "uv" else tuple(scales[i])
                     field = directions(scene, plan, layer, shape.arrays, own)
                     ends = tuple(low.tolist()), tuple(high.tolist())
-                    laid.append((random_scratches(layer, *ends, unit, field, True), own))
+
+                    def look(few: Curves, every: int, own: Any = own, number: int = numbers[m, k, 0]) -> None:
+                        foresee(Stroke(few, number, own), every, *surface)
+
+                    laid.append((random_scratches(layer, *ends, unit, field, True, look), own))
             for curves, own in laid:
                 for v, part in enumerate(dealt(curves, layer, parts)):
                     made.append(Stroke(part, numbers[m, k, v], own))
@@ -174,7 +181,7 @@ def pack(
     diffracting = [(m, w) for m, w in enumerate(plan.waves) if w is not None]
     numbers = {(m, k, v): 0 for m, w in diffracting for k, x in enumerate(w.layers) for v in range(len(x.outlines))}
     numbers = {pair: number for number, pair in enumerate(numbers)}
-    strokes = _strokes(scene, plan, key, shape, numbers)
+    strokes = _strokes(scene, plan, key, shape, numbers, device)
     crowds = Crowds(scene, plan, [m for m, _, _ in numbers]) if key.glint_crowds else None
     segments = None
     if key.glint_footprint in ("exact", "paper"):

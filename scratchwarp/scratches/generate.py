@@ -1,6 +1,7 @@
 """Scratches laid at random over a piece of the pattern plane, as polylines in uv."""
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,8 @@ MOST_CORNERS = 40_000_000
 _POINTS_A_RADIAN = 8.0
 # Scratches that are laid at once.
 PORTION = 1 << 13
+# Scratches of very many that are laid first, to tell what all of them come to.
+SAMPLE = 1 << 12
 
 
 def random_scratches(
@@ -23,6 +26,7 @@ def random_scratches(
     scale: tuple[float, float],
     field: Field | None = None,
     varying: bool = False,
+    look: Callable[[Curves, int], None] | None = None,
 ) -> Curves:
     """Scratches of one layer over the rectangle of uv from ``low`` to ``high``.
 
@@ -31,7 +35,8 @@ def random_scratches(
     random, their angles over ``angle_spread`` (all where distribution random has none), their widths and depths over
     the layer's variations, ``varying``: also along each as far as ``variation_length`` says. ``field``: uv ``[n, 2]``
     -> unit vectors of twice the direction that scratches follow from there, zeros for none; the layer's angle and its
-    spread turn them further. Raises ValueError where that would be more than ``MOST``, or more
+    spread turn them further. ``look``: called with ``SAMPLE`` of more than sixteen times as many scratches and how
+    many all of them are, before the others are laid. Raises ValueError where that would be more than ``MOST``, or more
     than ``MOST_CORNERS`` corners.
     """
     size = np.array([(high[0] - low[0]) * scale[0], (high[1] - low[1]) * scale[1]])
@@ -69,9 +74,8 @@ def random_scratches(
     else:
         along, across = length / turn * np.sin(turn * at), length / turn * (1.0 - np.cos(turn * at))
     points = corners
-    uv = np.zeros((n, points, 3))
-    for first in range(0, n, PORTION):  # what is in between stays in the processor's cache
-        some = slice(first, first + PORTION)
+
+    def laid(some: slice) -> tuple[Any, Any]:
         if field is not None:
             own = angle[some]
             x, y = np.moveaxis(followed(middle[some], own, own, length, np.array(low), np.array(scale), field), -1, 0)
@@ -79,7 +83,22 @@ def random_scratches(
             cosine, sine = np.cos(angle[some])[:, None], np.sin(angle[some])[:, None]
             x = middle[some, :1] + cosine * along - sine * across
             y = middle[some, 1:] + sine * along + cosine * across
-        uv[some, :, 0], uv[some, :, 1] = low[0] + x / scale[0], low[1] + y / scale[1]
+        return low[0] + x / scale[0], low[1] + y / scale[1]
+
+    unit = "uv" if layer.space == "uv" else "um"
+
+    def curves(uv: Any, widths: Any, depths: Any) -> Curves:
+        counts = np.full(len(uv), points, np.int32)
+        every = uv.reshape(-1, 3)
+        return Curves(layer.label, every, counts, widths, depths, space="uv", width_unit=unit, depth_unit=unit)
+
+    if look is not None and n > 16 * SAMPLE:
+        uv = np.stack([*laid(slice(0, n, n // SAMPLE)), np.zeros((len(range(0, n, n // SAMPLE)), points))], axis=-1)
+        look(curves(uv, *(np.full(uv[..., 0].size, mean) for mean in (layer.width, layer.depth))), n)
+    uv = np.zeros((n, points, 3))
+    for first in range(0, n, PORTION):  # what is in between stays in the processor's cache
+        some = slice(first, first + PORTION)
+        uv[some, :, 0], uv[some, :, 1] = laid(some)
 
     varying = varying and layer.variation_length > 0.0
 
@@ -88,15 +107,5 @@ def random_scratches(
             return np.full(n * points, mean)
         return np.repeat(mean * (1.0 + variation * (2.0 * rng.random(n) - 1.0)), points)
 
-    unit = "uv" if layer.space == "uv" else "um"
-    made = Curves(
-        path=layer.label,
-        points=uv.reshape(-1, 3),
-        counts=np.full(n, points, np.int32),
-        widths=sizes(layer.width, layer.width_variation),
-        depths=sizes(layer.depth, layer.depth_variation),
-        space="uv",
-        width_unit=unit,
-        depth_unit=unit,
-    )
+    made = curves(uv, sizes(layer.width, layer.width_variation), sizes(layer.depth, layer.depth_variation))
     return varied(made, layer, np.array([*scale, 1.0]), True) if varying else made

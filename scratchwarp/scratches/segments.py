@@ -225,13 +225,7 @@ def build(
     Raises ValueError where that would be more than ``MOST_PIECES`` pieces.
     """
     corners = points.numpy().reshape(-1, 3, 3)
-    f: Any = Facets()
-    f.points, f.uvs, f.dpdu, f.dpdv = points, uvs, dpdu, dpdv
-    on_surface = any(s.curves.space == "object" for s in strokes)
-    inward = edge_normals(corners) if on_surface else np.zeros((1, 3, 3), np.float32)
-    f.edges = wp.array(inward.reshape(-1, 3), dtype=wp.vec3, device=device)
-    # what rounding moves a point on the surface
-    slack = 4e-6 * float(np.abs(corners).max(initial=0.0)) + 1e-9
+    f, slack = _facets(strokes, points, uvs, dpdu, dpdv, device)
     # each scratch is made straight, cut twice (to count and to keep), and placed in the hierarchy
     left, total = [0], 4 * sum(len(s.curves.counts) for s in strokes)
 
@@ -261,6 +255,17 @@ def build(
         hierarchy = wp.Bvh(lower, upper, groups=dealt)
     done(total - left[0])
     return SegmentSet(segments, wp.array(starts, dtype=int, device=device), count, hierarchy)
+
+
+def _facets(strokes: Sequence[Stroke], points: Any, uvs: Any, dpdu: Any, dpdv: Any, device: str) -> tuple[Any, float]:
+    """What strokes are cut at, and what rounding moves a point on the surface [m]."""
+    corners = points.numpy().reshape(-1, 3, 3)
+    f: Any = Facets()
+    f.points, f.uvs, f.dpdu, f.dpdv = points, uvs, dpdu, dpdv
+    on_surface = any(s.curves.space == "object" for s in strokes)
+    inward = edge_normals(corners) if on_surface else np.zeros((1, 3, 3), np.float32)
+    f.edges = wp.array(inward.reshape(-1, 3), dtype=wp.vec3, device=device)
+    return f, 4e-6 * float(np.abs(corners).max(initial=0.0)) + 1e-9
 
 
 def _cut(
@@ -318,8 +323,16 @@ def _cutter(stroke: Stroke, f: Any, mesh: wp.Mesh, slack: float, device: str) ->
     return cut_in_uv, [f, over.id, wp.array(faces, dtype=int, device=device)], over
 
 
+def foresee(
+    few: Stroke, every: int, points: Any, uvs: Any, dpdu: Any, dpdv: Any, mesh: wp.Mesh, device: str = "cpu"
+) -> None:
+    """ValueError where a few of ``every`` polylines tell that ``build`` would make of all of them far more than
+    ``MOST_PIECES``; before the others are laid out."""
+    _estimated(few, every, *_facets([few], points, uvs, dpdu, dpdv, device), mesh, device)
+
+
 def _foreseen(stroke: Stroke, f: Any, mesh: wp.Mesh, slack: float, device: str) -> None:
-    """ValueError where one of so many polylines tells that all of them are far more than ``MOST_PIECES``."""
+    """The same where the polylines are there: by one of so many."""
     curves = stroke.curves
     counts = np.asarray(curves.counts, np.int64)
     taken = np.arange(0, len(counts), len(counts) // SAMPLE)
@@ -328,7 +341,11 @@ def _foreseen(stroke: Stroke, f: Any, mesh: wp.Mesh, slack: float, device: str) 
     at = np.repeat(first - (np.cumsum(own) - own), own) + np.arange(own.sum())
     sizes = {"widths": curves.widths[at], "depths": curves.depths[at]}
     few = replace(curves, points=curves.points[at], counts=own.astype(np.int32), **sizes)
-    s, n = stretches(few, stroke.layer, device)
+    _estimated(replace(stroke, curves=few), len(counts), f, slack, mesh, device)
+
+
+def _estimated(stroke: Stroke, every: int, f: Any, slack: float, mesh: wp.Mesh, device: str) -> None:
+    s, n = stretches(stroke.curves, stroke.layer, device)
     if n == 0:
         return
     kernel, given, _held = _cutter(stroke, f, mesh, slack, device)
@@ -336,10 +353,10 @@ def _foreseen(stroke: Stroke, f: Any, mesh: wp.Mesh, slack: float, device: str) 
     nothing: Any = wp.empty(0, dtype=Segment, device=device)
     none: Any = wp.empty(0, dtype=int, device=device)
     wp.launch(kernel, n, inputs=[s, *given, none, found, nothing], device=device)
-    pieces = float(found.numpy().sum(dtype=np.int64)) * len(counts) / len(taken)
+    pieces = float(found.numpy().sum(dtype=np.int64)) * every / len(stroke.curves.counts)
     if pieces > 1.5 * MOST_PIECES:
         raise ValueError(
-            f"{curves.path}: its {len(counts)} scratches would be cut into about {pieces:.2g} pieces by the triangles "
+            f"{stroke.curves.path}: its {every} scratches would be cut into about {pieces:.2g} pieces by the triangles "
             f"that they cross, more than {MOST_PIECES}; make the scratches fewer or shorter, or set the layer's model "
             "to table"
         )

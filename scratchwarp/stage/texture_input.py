@@ -3,7 +3,7 @@
 from typing import Any
 
 import numpy as np
-from pxr import Usd, UsdShade
+from pxr import Sdf, Usd, UsdShade
 
 from scratchwarp.scene import TextureInput
 from scratchwarp.scene.texture import CHANNELS, WRAPS
@@ -29,7 +29,7 @@ def read_texture_input(
         reading.warn(path, f"outputs:{output} is none of a UsdUVTexture; the input's default is used")
         return default
     file = source_of(node, "file")
-    asset = file.Get(reading.time) if file else None
+    asset = constant(reading, file, Sdf.AssetPath()) if file else None
     space = _space(reading, node, file)
     index = textures.index(path, asset, automatic if space == "auto" else space)
     is_color = isinstance(default, tuple)

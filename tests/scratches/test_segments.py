@@ -6,7 +6,7 @@ import warp as wp
 
 from scratchwarp.scene import Curves, Layer, Profile
 from scratchwarp.scratches import segments
-from scratchwarp.scratches.generate import random_scratches
+from scratchwarp.scratches.generate import SAMPLE, random_scratches
 from scratchwarp.scratches.segments import Stroke, build, stretches, surroundings
 
 RADIUS = 0.05
@@ -111,6 +111,28 @@ def test_random_scratches_cover_what_was_asked_for():
         random_scratches(layer, (0.0, 0.0), (1.0, 1.0), (2e7, 2e7))
     with pytest.raises(ValueError, match="9 corners each are more than"):  # where they follow a field
         random_scratches(layer, (0.0, 0.0), (1.0, 1.0), (1.45e5, 1.45e5), lambda uv: np.ones_like(uv))
+
+
+def test_some_of_very_many_scratches_are_laid_first():
+    """They are those that all of them hold, evenly; what is not wanted is not laid."""
+    layer = Layer("fine", "/mat", Profile("/p"), distribution="random", width=4.0, length=400.0, density=2e3, depth=0.5)
+    seen = []
+    made = random_scratches(layer, (0, 0), (1, 1), (6e3, 6e3), look=lambda few, every: seen.append((few, every)))
+    few, every = seen[0]
+    step = every // SAMPLE
+    assert every == len(made.counts) > 16 * SAMPLE and len(seen) == 1
+    np.testing.assert_array_equal(few.points, made.points.reshape(every, 2, 3)[::step].reshape(-1, 3))
+    np.testing.assert_array_equal(few.depths, 0.5)
+
+    def stop(few, every):
+        raise ValueError("enough")
+
+    asked = []
+    with pytest.raises(ValueError, match="enough"):
+        random_scratches(
+            layer, (0, 0), (1, 1), (6e3, 6e3), lambda uv: asked.append(len(uv)) or np.ones_like(uv), look=stop
+        )
+    assert max(asked) < 2 * SAMPLE
 
 
 MANY = Curves(

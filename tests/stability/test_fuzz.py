@@ -20,6 +20,8 @@ ONCE = {
     1404: "a shape's displayColor was one number",
     2013: "grooves two hundred times as wide as they were apart left a ray without the pieces near it",
     2057: "a layer of grooves had curves without points",
+    3085: "millions of scratches followed a map of directions before a few of them told that they are far too many",
+    3385: "the file of a texture was a string",
 }
 
 
