@@ -180,7 +180,8 @@ _EXAMPLES = {
     "  scratchwarp view cloth.bin --screenshot cloth.png",
     "study": "scratchwarp study ball.usda ball_study --budget 10m\n"
     "  scratchwarp study ball.usda out --knobs spp,tables.resolution,tables.rays -w 96 --repeats 5\n"
-    "  scratchwarp study --calibrate   # this machine's prices, which explain --cost and --maxError go by",
+    "  scratchwarp study --calibrate   # this machine's prices, which explain --cost and --maxError go by\n"
+    "  scratchwarp study --calibrate --errors   # what knobs leave, which --maxError goes by",
     "fit": "scratchwarp fit cloth.bin cloth.usda --report cloth\n  scratchwarp fit paint.binary paint.usda --modes 1\n"
     "  scratchwarp fit kettle.usda far.usda --material brass   # scratches seen from far away",
     "scratchmap": "scratchwarp scratchmap hairlines.png --direction 0 --spread 4 --density 900\n"
@@ -298,6 +299,10 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument(
         "--calibrate", action="store_true", help="measure instead what work costs on this machine, for all renders"
     )
+    made.add_argument(
+        "--errors", action="store_true",
+        help="with --calibrate: what each value of each knob leaves, for --maxError; goes on after an interruption",
+    )  # fmt: skip
     made.add_argument(
         "--budget", metavar="TIME", help="90s, 10m or 2h: be done by then; first each knob alone, then several [none]"
     )

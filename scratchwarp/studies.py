@@ -18,13 +18,13 @@ def run(args: argparse.Namespace, warn: Callable[[Sequence[str]], None]) -> tupl
 
     import scratchwarp as sw
 
-    from .pipelines.calibrate import calibrated
+    from .pipelines import calibrate
     from .study import command
 
     names, budget = asked(args)
     if args.calibrate:
-        file = calibrated(args.quiet)
-        return str(file), json.dumps({"prices": str(file)})
+        file = calibrate.errors(args.quiet) if args.errors else calibrate.calibrated(args.quiet)
+        return str(file), json.dumps({"errors" if args.errors else "prices": str(file)})
     scene = sw.read(args.stage, **arguments.reading(args))
     warn(scene.warnings)
     args.kept = args.out
@@ -47,6 +47,8 @@ def asked(args: argparse.Namespace) -> tuple[tuple[str, ...] | None, float | Non
         if args.stage:
             raise UsageError("--calibrate renders stages of its own; leave out STAGE and OUT_DIR")
         return None, None
+    if args.errors:
+        raise UsageError("--errors is what --calibrate measures; write study --calibrate --errors")
     if not args.stage or not args.out:
         raise UsageError("STAGE and OUT_DIR are needed, or --calibrate alone")
     if args.repeats < 1:

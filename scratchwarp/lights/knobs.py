@@ -16,6 +16,7 @@ KNOBS = (
             "closed": {},
         },
         noise=True,
+        alternatives=("cones",),  # which seldom meet small lights
         source="multiple importance sampling: Veach 1997, chapter 9",
     ),
     Knob(

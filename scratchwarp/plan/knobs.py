@@ -41,6 +41,7 @@ _OWN = (
         error="scratches of another reflectance",
         sets="settings.model",
         effects=("scratches.table",),
+        alternatives=("mirror",),  # far too bright on dielectrics; on metals it depends
         source="Raymond, Guennebaud, Barla 2016, Figure 7",
     ),
     Knob(

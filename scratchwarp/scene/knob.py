@@ -25,6 +25,8 @@ class Knob:
         limits: least and greatest value of a number; other numbers than ``values`` may be asked for between them.
         quality: values for draft, preview, final and reference; none: the default for all of them.
         noise: the error is noise, which falls with samples; otherwise samples do not cure it.
+        alternatives: values that have no place in the order from cheap to reference: how close they come to it, next to
+            the others, depends on the scene.
 
     The value "auto" leaves things as the stage or the plan has them.
     """
@@ -39,6 +41,7 @@ class Knob:
     limits: tuple[int, int] | None = None
     quality: tuple[Value, ...] = ()
     noise: bool = False
+    alternatives: tuple[Value, ...] = ()
     source: str = ""
 
     def __post_init__(self) -> None:
@@ -46,6 +49,8 @@ class Knob:
             raise ValueError(f"Knob {self.name}: default {self.default!r} is none of {self.values}")
         if self.quality and (len(self.quality) != len(QUALITIES) or not set(self.quality) <= set(self.values)):
             raise ValueError(f"Knob {self.name}: quality {self.quality} is not a value for each of {QUALITIES}")
+        if not set(self.alternatives) <= set(self.values[:-1]):
+            raise ValueError(f"Knob {self.name}: alternatives {self.alternatives} is not some of {self.values[:-1]}")
         if bool(self.sets) == bool(self.switches):
             raise ValueError(f"Knob {self.name}: it either sets something or switches effects")
         put(self, switches=MappingProxyType({k: MappingProxyType(dict(v)) for k, v in self.switches.items()}))

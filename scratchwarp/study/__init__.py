@@ -10,7 +10,8 @@ Files:
     guess, order    how long the next render will take; which setting comes next
     measurement     one rendering, and the file of all of them
     measures        relative mean square error and FLIP; table_error: of the tables themselves
-    calibration     prices of units of work on this machine; knob_errors: what knobs leave (both: plan/cost/*.json)
+    calibration     prices of units of work on this machine (plan/cost/costs.json); price_fit: from measured seconds
+    error_calibration  what knobs leave (plan/cost/errors.json), by knob_errors on the stages of error_cases
     report          rows, the front, and files
     chart, page     error against seconds as SVG, the report as HTML
     fit_candidates  a stencil model and its rivals, fitted to one measurement

@@ -1,26 +1,21 @@
-"""What each value of a knob leaves in an image: the file ``plan/cost/errors.json`` is made by this.
+"""What each value of a knob leaves in an image, measured; ``error_calibration`` writes the file of it.
 
 Two pairs of images with seeds of their own are rendered, each with the same samples at a value and at the knob's
 reference value. The mean product of the two differences has no noise in it on average; its standard error is added.
 How much noisier a value is follows from how far the two seeds are apart, at that value and at the reference value.
 """
 
-import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from ..plan import make_plan
 from ..plan.knobs import KNOBS, acting
-from ..render.progress import Progress, silent
-from ..render.renderer import render
-from ..scene import DomeLight, Profile, RectLight, Scene, Settings, Shaping, Texture
+from ..scene import Scene, Settings
 from ..scene.knob import Value
-from ..whole import whole
-from .measures import rel_mse, weights
+from .measures import weights
+from .shots import Shots
 
 MEASURED = (
     "tables.resolution", "tables.rays", "tables.bounces", "lights.coneTaps", "pathDepth", "grooves.lines",
@@ -50,20 +45,22 @@ class Left:
 def left(scene: Scene, settings: Settings, names: Iterable[str] = MEASURED) -> Left:
     """Measure; knobs that do nothing here are left out."""
     known, found = acting(make_plan(scene, settings)), Left()
+    shots = Shots(scene, settings)
     for name in (n for n in names if n in known):
-        few = replace(settings, spp=min(FEW.get(name, settings.spp or 1), settings.spp or 1))
-        best = [_image(scene, few, {name: KNOBS[name].reference}, seed) for seed in SEEDS]
-        weight = weights(0.5 * (best[0].astype(np.float64) + best[1]))
+        few = min(FEW.get(name, settings.spp or 1), settings.spp or 1)
+        own = shots if few == settings.spp else Shots(scene, replace(settings, spp=few))
+        best = pair(own, {name: KNOBS[name].reference})
+        weight = weights(0.5 * (best[0] + best[1]))
         apart = _mean_square(best, weight)
         bias: dict[str, float] = {}
         noisier: dict[str, float] = {}
         for value in KNOBS[name].values[:-1]:
             if value == "auto":
                 continue
-            made = [_image(scene, few, {name: value}, seed) for seed in SEEDS]
+            made = pair(own, {name: value})
             if not bias and all(np.array_equal(one, other) for one, other in zip(made, best, strict=True)):
                 break
-            first, second = (one.astype(np.float64) - other for one, other in zip(made, best, strict=True))
+            first, second = (one - other for one, other in zip(made, best, strict=True))
             off = (first * second).mean(axis=-1) * weight
             bias[str(value)] = max(float(off.mean()), 0.0) + float(off.std()) / np.sqrt(off.size)
             if name in NOISY:
@@ -75,58 +72,26 @@ def left(scene: Scene, settings: Settings, names: Iterable[str] = MEASURED) -> L
     return found
 
 
-def _mean_square(pair: list[np.ndarray], weight: np.ndarray) -> float:
-    return float((((pair[0].astype(np.float64) - pair[1]) ** 2).mean(axis=-1) * weight).mean())
+def pair(shots: Shots, knobs: Mapping[str, Value]) -> list[np.ndarray]:
+    """Two images of a setting with seeds of their own, float64; tables are simulated once."""
+    if shots.stock.key is None and not any(KNOBS[name].place[0] == "table" for name in knobs):
+        shots.take({}, SEEDS[0])
+    one = shots.take(knobs, SEEDS[0])
+    two = shots.take(knobs, SEEDS[1], stock=one.stock)
+    return [one.image.astype(np.float64), two.image.astype(np.float64)]
 
 
-def variants(scene: Scene, settings: Settings) -> dict[str, tuple[Scene, Settings, tuple[str, ...]]]:
-    """Name -> the stage itself, or otherwise lit or coloured so that further knobs act, and the knobs to measure."""
-    plan = make_plan(scene, settings)
-    found: dict[str, tuple[Scene, Settings, tuple[str, ...]]] = {"": (scene, settings, MEASURED)}
-    if plan.on("lights.closedForm"):
-        found["under windows"] = under_windows(scene), settings, ("lights.coneTaps",)
-    if plan.on("grooves"):
-        found["of round grooves"] = round_grooves(scene), settings, ("grooves.section",)
-    if plan.on("diffraction.lookup") or plan.on("diffraction.distantLookup"):
-        knobs = {**settings.knobs, "diffraction.colors": "wavelengths"}
-        found["by wavelengths"] = scene, replace(settings, knobs=knobs), ("diffraction.wavelengths",)
-    return found
-
-
-def under_windows(scene: Scene) -> Scene:
-    """Domes show a room of three windows, plates of light shine mostly ahead."""
-    pixels = np.full((32, 64, 4), 0.1, np.float32)
-    for row, column, rows, columns in ((8, 6, 6, 4), (4, 27, 3, 12), (12, 50, 8, 3)):
-        pixels[row : row + rows, column : column + columns] = 8.0
-    shaped = Shaping(focus=4.0, cone_angle=0.9, cone_softness=0.3)
-    lights = []
-    for light in scene.lights:
-        if isinstance(light, DomeLight):
-            light = replace(light, texture=len(scene.textures))
-        elif isinstance(light, RectLight):
-            light = replace(light, shaping=shaped)
-        lights.append(light)
-    return replace(scene, lights=tuple(lights), textures=(*scene.textures, Texture("/windows", pixels)))
-
-
-def round_grooves(scene: Scene) -> Scene:
-    """Cross-sections are arcs, of which simplified ones have fewer facets."""
-    materials = tuple(
-        replace(m, layers=tuple(replace(x, profile=Profile(path="/round", shape="round")) for x in m.layers))
-        for m in scene.materials
-    )
-    return replace(scene, materials=materials)
+def _mean_square(images: list[np.ndarray], weight: np.ndarray) -> float:
+    return float((((images[0] - images[1]) ** 2).mean(axis=-1) * weight).mean())
 
 
 def noise(scene: Scene, settings: Settings, counts: tuple[int, ...] = (2, 8, 32)) -> list[float]:
-    """relMSE of images of ``counts`` samples against one of 1024."""
-    best = _image(scene, settings, {"spp": 1024}, SEEDS[0])
-    return [rel_mse(_image(scene, settings, {"spp": n}, SEEDS[1]), best) for n in counts]
-
-
-def _image(scene: Scene, settings: Settings, knobs: Mapping[str, Value], seed: int) -> np.ndarray:
-    plan = make_plan(scene, replace(settings, knobs={**settings.knobs, **knobs}, seed=seed))
-    return render(scene, replace(plan, settings=replace(plan.settings, max_error=None)))["color"]
+    """relMSE of the noise of images of ``counts`` samples: half of the squared difference of two seeds, relative to the
+    mean image of four times as many samples as the most."""
+    shots = Shots(scene, settings)
+    best = pair(shots, {"spp": 4 * max(counts)})
+    weight = weights(0.5 * (best[0] + best[1]))
+    return [0.5 * _mean_square(pair(shots, {"spp": count}), weight) for count in counts]
 
 
 def summed_up(stages: Iterable[Mapping[str, Mapping[str, float]]], least: float = 0.0) -> Rows:
@@ -146,26 +111,3 @@ def summed_up(stages: Iterable[Mapping[str, Mapping[str, float]]], least: float 
             falling[value] = most
         made[name] = {str(v): falling[str(v)] for v in KNOBS[name].values if str(v) in falling}
     return made
-
-
-def write(
-    file: str | Path, stages: Mapping[str, Left], noises: Iterable[list[float]], progress: Progress = silent
-) -> Path:
-    """Write what was measured of stages; ``noises``: as ``noise`` gives them."""
-    known = [found for found in noises if found[2] > 0.0]
-    powers = [np.log(found[0] / found[2]) / np.log(16.0) for found in known]
-    noisier = summed_up((found.noisier for found in stages.values()), 1.0)
-    record: dict[str, Any] = {
-        "stages": list(stages),
-        "bias": _rounded(summed_up(found.bias for found in stages.values())),
-        "noisier": _rounded(noisier),
-        "noise": [float(np.median([8.0 * found[1] for found in known])), float(np.clip(np.median(powers), 0.8, 1.5))],
-    }
-    progress(1, 1, "errors")
-    with whole(Path(file)) as draft:
-        draft.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
-    return Path(file)
-
-
-def _rounded(rows: Rows) -> Rows:
-    return {name: {value: float(f"{number:.3g}") for value, number in own.items()} for name, own in rows.items()}

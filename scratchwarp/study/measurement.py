@@ -25,6 +25,7 @@ class Measurement:
         error: relMSE against the reference. bias: against the knob's own reference value with the same samples, None
             where several are turned. flip: None where it is not installed. table: error of the tables themselves, where
             only they are turned (see ``table_error``). doubt: standard error of ``error``, from its spread over pixels.
+        unsure: standard error of ``bias`` or ``beside``, from its spread over pixels.
         beside: bias of the defaults against this, where it is a knob at its value in the reference.
     """
 
@@ -39,6 +40,7 @@ class Measurement:
     table: float | None = None
     doubt: float = 0.0
     beside: float | None = None
+    unsure: float = 0.0
 
     @property
     def total(self) -> float:

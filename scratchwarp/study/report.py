@@ -35,6 +35,7 @@ class Row:
         table: error of the tables themselves, where only they are turned.
         doubt: standard error of ``error``, from its spread over the pixels of one round.
         beside: bias of the defaults against this, where it is a knob at its value in the reference.
+        unsure: standard error of ``bias`` or ``beside``, from its spread over the pixels of one round.
     """
 
     name: str
@@ -53,6 +54,7 @@ class Row:
     table: float | None = None
     doubt: float = 0.0
     beside: float | None = None
+    unsure: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,10 +91,10 @@ class Report:
         to reference."""
         default = self.about["defaults"].get(name)
         found = {row.knobs[name]: row for row in self.rows if set(row.knobs) == {name}}
-        beside = next((row.beside for row in found.values() if row.beside is not None), None)
+        top = next((row for row in found.values() if row.beside is not None), None)
         base = next((row for row in self.rows if not row.knobs), None)
         if base is not None:
-            found[default] = replace(base, bias=beside)
+            found[default] = base if top is None else replace(base, bias=top.beside, unsure=top.unsure)
         values = sorted(found, key=lambda v: KNOBS[name].values.index(v) if v in KNOBS[name].values else int(v))
         return tuple(found[value] for value in values)
 
@@ -118,20 +120,28 @@ class Report:
     def falls(self, name: str) -> bool:
         """Whether a knob's error falls from value to value to the reference, within its noise.
 
-        What a knob does is its bias, where it has one; noise is what the least and the greatest error of a setting are
-        apart, of one round twice the standard error of the mean over its pixels, and a tenth of the error at least.
-        "auto", which is what the plan takes, has no place among the values.
+        What a knob does is its bias, where it has one. Noise is what the least and the greatest error of a setting are
+        apart, of one round and of biases twice the standard error of the mean over pixels; a tenth of the error (of
+        biases, of the greatest) at least. "auto", which is what the plan takes, has no place among the values;
+        alternatives have none either, but the last value must be below each.
         """
         default = self.about["defaults"].get(name)
         rows = [row for row in self.knob_rows(name) if row.knobs.get(name, default) != "auto"]
         values = [row.error if row.bias is None else row.bias for row in rows]
         apart = [row.most_error - row.least_error if row.rounds > 1 else 2.0 * row.doubt for row in rows]
         slack = [max(own, 0.1 * value) for own, value in zip(apart, values, strict=True)]
-        if any(row.bias is not None for row in rows):  # the reference has none of its own
-            values = [value for row, value in zip(rows, values, strict=True) if row.bias is not None]
-            slack = [0.1 * max(values) for _ in values]
-        noise = [max(pair) for pair in zip(slack, slack[1:], strict=False)]
-        return all(b <= a + s for a, b, s in zip(values, values[1:], noise, strict=False))
+        biased = any(row.bias is not None for row in rows)
+        if biased:  # the reference has none of its own
+            rows = [row for row in rows if row.bias is not None]
+            values = [row.bias for row in rows if row.bias is not None]
+        aside = [row.knobs.get(name, default) in KNOBS[name].alternatives for row in rows]
+        if biased:
+            tenth = 0.1 * max([value for value, other in zip(values, aside, strict=True) if not other], default=0.0)
+            slack = [max(2.0 * row.unsure, tenth) for row in rows]
+        known = list(zip(values, slack, aside, strict=True))
+        order = [one for one in known if not one[2]]
+        pairs = [*zip(order, order[1:], strict=False), *((one, order[-1]) for one in known if one[2] and order)]
+        return all(b <= a + max(s, t) for (a, s, _), (b, t, _) in pairs)
 
     def record(self) -> dict[str, Any]:
         """Everything but the images, as what JSON can hold."""
@@ -200,6 +210,7 @@ def _row(name: str, own: Sequence[Measurement], base: float) -> Row:
         flip=float(np.mean(flips)) if flips else None,
         rounds=len(own),
         table=next((one.table for one in own if one.table is not None), None),
+        unsure=float(np.sqrt(np.mean([one.unsure**2 for one in own]) / len(own))),
         beside=float(np.mean(beside)) if (beside := [one.beside for one in own if one.beside is not None]) else None,
         doubt=float(np.sqrt(np.mean([one.doubt**2 for one in own]) / len(own))),
     )
@@ -212,7 +223,8 @@ def _beats(other: Row, row: Row) -> bool:
 
 def _described(name: str) -> dict[str, Any]:
     knob = KNOBS[name]
-    return {"error": knob.error, "source": knob.source, "values": knob.values, "reference": knob.reference}
+    named = {"values": knob.values, "alternatives": knob.alternatives, "reference": knob.reference}
+    return {"error": knob.error, "source": knob.source, **named}
 
 
 def _table(report: Report) -> str:

@@ -212,19 +212,21 @@ class Study:
         self.first = None
         name, image = setting_name(knobs), shot.image
         bias = beside = None
+        unsure = 0.0
         if len(knobs) < 2:
             self._known[f"{name} @{seed}"] = image
         if len(knobs) == 1:
-            bias = self._bias(knobs, image, seed, left, cost)
+            bias, unsure = self._bias(knobs, image, seed, left, cost)
             ((knob, value),) = knobs.items()
             base_image = self._known.get(f"{setting_name({})} @{seed}")
             if not KNOBS[knob].noise and value == self.best.get(knob) and base_image is not None:
-                beside = rel_mse(base_image, image)
+                beside, unsure = rel_mse(base_image, image), uncertainty(base_image, image)
         total = sum(shot.seconds[part] for part in PARTS)
         base = total if not knobs else self._base(repeat) or total
         error, table = rel_mse(image, self.reference), self._table_error(knobs, shot) if repeat == 0 else None
         seen, doubt = flip(image, self.reference), uncertainty(image, self.reference)
-        row = Measurement(dict(knobs), repeat, dict(shot.seconds), base, error, bias, seen, seed, table, doubt, beside)
+        taken = dict(shot.seconds)
+        row = Measurement(dict(knobs), repeat, taken, base, error, bias, seen, seed, table, doubt, beside, unsure)
         self.book.add(row)
         if len(knobs) < 2 and name not in self._images:
             self._keep(name, image)
@@ -237,19 +239,20 @@ class Study:
         seed: int,
         left: float,
         cost: Callable[[Mapping[str, Value]], float] | None,
-    ) -> float | None:
-        """relMSE against the knob's reference value with the same samples; None where it is that, or noise."""
+    ) -> tuple[float | None, float]:
+        """relMSE against the knob's reference value with the same samples, None where it is that, or noise; and its
+        standard error."""
         ((name, value),) = knobs.items()
         best = self.best.get(name, KNOBS[name].reference)
         if KNOBS[name].noise or value == best:
-            return None
+            return None, 0.0
         paired = {} if best == self.defaults[name] else {name: best}
         known = f"{setting_name(paired)} @{seed}"
         if known not in self._known:
             if self.shots.planned(paired) is None or (cost is not None and cost(paired) > left):
-                return None
+                return None, 0.0
             self._known[known] = self.shots.take(paired, seed).image
-        return rel_mse(image, self._known[known])
+        return rel_mse(image, self._known[known]), uncertainty(image, self._known[known])
 
     def _table_error(self, knobs: Mapping[str, Value], shot: Shot) -> float | None:
         """Error of the tables where only they are turned, or nothing is."""

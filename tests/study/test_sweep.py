@@ -82,6 +82,44 @@ def test_what_the_plan_takes_has_no_place_among_the_values():
     assert not Report(Report.rows_of(found), about, report.reference).falls("diffraction.wavelengths")
 
 
+def one(knob, value, default, bias=None, error=0.01, unsure=0.0, beside=None):
+    knobs = {} if value == default else {knob: value}
+    return Measurement(knobs, 0, {"trace": 1.0}, 1.0, error, bias, beside=beside, unsure=unsure)
+
+
+def falls(knob, default, rows):
+    return Report(Report.rows_of(rows), {"defaults": {knob: default}}, np.zeros((1, 1, 3))).falls(knob)
+
+
+@pytest.mark.parametrize(("unsure", "good"), [(0.0005, False), (0.007, True)])
+def test_the_noise_of_biases_counts(unsure, good):
+    """Few bright pixels carry both biases: 0.0219 after 0.0167 is no rise where each is known to 0.007."""
+    knob, default = "scratches.coverageFilter", "sample"
+    rows = [one(knob, "sample", default), one(knob, "pixel", default, 0.0167, unsure=unsure)]
+    rows.append(one(knob, "point", default, beside=0.0219, unsure=unsure))
+    assert falls(knob, default, rows) == good
+
+
+def test_alternatives_have_no_place_in_the_order():
+    """Mirrors are close on metals and far off on dielectrics, and in neither case are the others out of order; they are
+    where the dearest value is worse than an alternative, or where they rise themselves."""
+    knob, default = "scratches.model", "table"
+
+    def models(mirror, tabulated=1e-3, table=1e-8):
+        rows = [one(knob, "table", default), one(knob, "ashikhminShirley", default, 0.01)]
+        rows += [one(knob, "tabulatedNdf", default, tabulated), one(knob, "mirror", default, mirror)]
+        return [*rows, one(knob, "singleBounce", default, 1e-5), one(knob, "fullTable", default, beside=table)]
+
+    assert falls(knob, default, models(1.0)) and falls(knob, default, models(5e-4))
+    assert not falls(knob, default, models(1.0, tabulated=0.05))  # the tenth is one of those in order
+    assert not falls(knob, default, models(1e-6, table=0.002))
+    knob, default = "lights.cones", "closed"
+    noisy = [one(knob, value, default, error=e) for value, e in (("closed", 0.16), ("lights", 0.17), ("cones", 16.0))]
+    assert falls(knob, default, noisy)
+    noisy[0] = one(knob, "closed", default, error=17.9)
+    assert not falls(knob, default, noisy)
+
+
 def test_the_front_is_what_nothing_beats(done):
     front = done[0].pareto()
     assert front and all(a.seconds <= b.seconds and a.error >= b.error for a, b in zip(front, front[1:], strict=False))

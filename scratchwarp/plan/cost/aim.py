@@ -18,7 +18,7 @@ from ..choice import EffectPlan
 from ..grooves import recut, slack_of
 from ..knobs import KNOBS, acting, turned_tables
 from .forecast import forecast
-from .models import Costs, Errors, costs, errors, shipped
+from .models import Costs, Errors, costs, errors, shipped, shipped_errors
 from .visible import visible
 from .work import of_table
 
@@ -127,10 +127,10 @@ def suited(
     """The cheapest knobs that leave an error which the noise of ``samples`` a pixel hides; those ``given`` stay.
 
     Nothing depends on the part that is rendered or on the machine, so that crops have the same knobs: materials count
-    alike, one thread, and prices are those that are shipped. Of the camera only how many grooves and scratches that
-    diffract lie under a footprint counts, so frames of a zoom onto these may differ.
+    alike, one thread, and prices and errors are those that are shipped. Of the camera only how many grooves and
+    scratches that diffract lie under a footprint counts, so frames of a zoom onto these may differ.
     """
-    prices, left = prices or shipped(), left or errors()
+    prices, left = prices or shipped(), left or shipped_errors()
     one, power = left.noise
     most = QUALITY_SHARE * one / samples**power
     seen = np.full(max(len(scene.materials), 1), 1.0 / max(len(scene.materials), 1))

@@ -2,7 +2,7 @@
 
 ``scratchwarp study --calibrate`` measures the machine that it runs on and writes ``costs.json`` into the user's cache
 folder ($SCRATCHWARP_CACHE, $XDG_CACHE_HOME/scratchwarp or ~/.cache/scratchwarp), where it is found from then on. Errors
-do not depend on the machine; they are shipped in ``errors.json``.
+do not depend on the machine; with ``--errors`` they are measured anew and written beside the prices.
 """
 
 import json
@@ -65,10 +65,15 @@ class Errors:
 
 
 def user_file() -> Path:
-    """Where ``--calibrate`` keeps what it measured."""
+    """Where ``--calibrate`` keeps the prices that it measured."""
     own = os.environ.get("SCRATCHWARP_CACHE")
     base = Path(own) if own else Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "scratchwarp"
     return base / "costs.json"
+
+
+def user_errors() -> Path:
+    """Where ``--calibrate --errors`` keeps what it measured."""
+    return user_file().with_name("errors.json")
 
 
 def costs() -> Costs:
@@ -103,8 +108,28 @@ def _costs(file: Path, _changed: int) -> Costs:
     )
 
 
-@lru_cache(maxsize=1)
 def errors() -> Errors:
-    """What was measured of errors."""
-    record = json.loads((_HERE / "errors.json").read_text(encoding="utf-8"))
-    return Errors(record["bias"], (float(record["noise"][0]), float(record["noise"][1])), record.get("noisier", {}))
+    """The user's own errors of knobs where they can be read, else those shipped."""
+    file = user_errors()
+    if file.is_file():
+        try:
+            return read_errors(file, file.stat().st_mtime_ns)
+        except (OSError, ValueError, KeyError, TypeError, AttributeError):
+            return shipped_errors()
+    return shipped_errors()
+
+
+def shipped_errors() -> Errors:
+    """The errors of knobs that came with the package."""
+    return read_errors(_HERE / "errors.json", 0)
+
+
+@lru_cache(maxsize=4)
+def read_errors(file: Path, _changed: int = 0) -> Errors:
+    """A file as ``--calibrate --errors`` writes it; ValueError where it has another format."""
+    record: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+    if record["format"] != FORMAT:
+        raise ValueError(f"{file}: format {record['format']} is not {FORMAT}; run scratchwarp study --calibrate again")
+    bias, noisier = ({n: {v: float(x) for v, x in own.items()} for n, own in record[k].items()}
+                     for k in ("bias", "noisier"))  # fmt: skip
+    return Errors(bias, (float(record["noise"][0]), float(record["noise"][1])), noisier)
