@@ -62,9 +62,9 @@ def read_curves(
     None, with a warning, without curves; StageError on points that are not finite.
     """
     path = str(prim.GetPath())
-    points = np.asarray(reading.value(prim, "points", []), np.float64).reshape(-1, 3)
-    counts = np.asarray(reading.value(prim, "curveVertexCounts", []), np.int64)
-    if not len(points) or counts.sum() != len(points) or counts.min() < 1:
+    points = reading.numbers(prim.GetAttribute("points"), 3)
+    counts = reading.numbers(prim.GetAttribute("curveVertexCounts"), whole=True)
+    if not len(points) or counts.sum() != len(points) or counts.min(initial=1) < 1:
         reading.warn(path, f"curveVertexCounts add up to {counts.sum()}, points has {len(points)}; it is left out")
         return None
     finite = np.isfinite(points).all(1)
@@ -118,9 +118,7 @@ def _scalar(reading: Reading, prim: Usd.Prim, name: str, kind: CurveKind, counts
     attribute = prim.GetAttribute(name)
     if not attribute or not attribute.HasValue():
         return None
-    primvar = UsdGeom.Primvar(attribute)
-    got = primvar.ComputeFlattened(reading.time) if primvar else attribute.Get(reading.time)
-    values = np.asarray([] if got is None else got, np.float64)
+    values = reading.numbers(attribute)
     if not len(values):
         return None
     if not np.isfinite(values).all():

@@ -24,9 +24,9 @@ def read_mesh(reading: Reading, prim: Usd.Prim) -> Mesh | None:
     """
     mesh = UsdGeom.Mesh(prim)
     path = str(prim.GetPath())
-    points = np.asarray(_array(mesh.GetPointsAttr(), reading), np.float64).reshape(-1, 3)
-    counts = np.asarray(_array(mesh.GetFaceVertexCountsAttr(), reading), np.int64)
-    indices = np.asarray(_array(mesh.GetFaceVertexIndicesAttr(), reading), np.int64)
+    points = reading.numbers(mesh.GetPointsAttr(), 3)
+    counts = reading.numbers(mesh.GetFaceVertexCountsAttr(), whole=True)
+    indices = reading.numbers(mesh.GetFaceVertexIndicesAttr(), whole=True)
     if not len(points) or not len(counts):
         reading.warn(path, "the mesh has no faces; it is left out")
         return None
@@ -93,11 +93,6 @@ def _complain(reading: Reading, prim: Usd.Prim, api: UsdGeom.PrimvarsAPI) -> Non
         reading.warn(prim.GetPath(), "displayOpacity is not honoured; it is rendered opaque")
 
 
-def _array(attribute: Usd.Attribute, reading: Reading):
-    got = attribute.Get(reading.time)
-    return [] if got is None else got
-
-
 def _check_points(path: str, points: np.ndarray) -> None:
     finite = np.isfinite(points).all(1)
     if not finite.all():
@@ -111,7 +106,7 @@ def _faces(reading: Reading, mesh: UsdGeom.Mesh, counts: np.ndarray) -> np.ndarr
     path = mesh.GetPath()
     if not keep.all():
         reading.warn(path, "faces with fewer than three corners are left out")
-    holes = np.asarray(_array(mesh.GetHoleIndicesAttr(), reading), np.int64)
+    holes = reading.numbers(mesh.GetHoleIndicesAttr(), whole=True)
     inside = (holes >= 0) & (holes < len(counts))
     if not inside.all():
         reading.warn(path, f"holeIndices point outside 0..{len(counts) - 1}; those are ignored")
@@ -179,7 +174,7 @@ def _layer_primvars(reading: Reading, api: UsdGeom.PrimvarsAPI, corners: Corners
 def _slots(reading: Reading, prim: Usd.Prim, corners: Corners) -> np.ndarray:
     slots = np.zeros(corners.face_count, np.int32)
     for slot, subset in enumerate(material_subsets(prim), start=1):
-        faces = np.asarray(_array(subset.GetIndicesAttr(), reading), np.int64)
+        faces = reading.numbers(subset.GetIndicesAttr(), whole=True)
         inside = (faces >= 0) & (faces < corners.face_count)
         if not inside.all():
             reading.warn(subset.GetPath(), f"indices point outside 0..{corners.face_count - 1}; those are ignored")

@@ -86,9 +86,11 @@ class Reading:
         definition = prim.GetPrimDefinition().GetAttributeDefinition(name)
         like = definition.GetFallbackValue() if definition else None
         like = otherwise if like is None else like
-        if got is None or fits(got, like):
+        typed = definition.GetTypeName().defaultValue if definition and like is None else like
+        if got is None or fits(got, typed):
             return like if got is None else got
-        self.warn(attribute.GetPath(), f"holds {got!r}, which is of the wrong type; {like!r} is used")
+        used = "nothing" if like is None else repr(like)
+        self.warn(attribute.GetPath(), f"holds {got!r}, which is of the wrong type; {used} is used")
         return like
 
     def number(self, prim: Usd.Prim, name: str, otherwise: float = 0.0) -> float:
@@ -98,6 +100,26 @@ class Reading:
             self.warn(prim.GetPath(), f"{name} is {got}; {otherwise:g} is used")
             return otherwise
         return got
+
+    def numbers(self, attribute: Usd.Attribute, width: int = 1, whole: bool = False) -> np.ndarray:
+        """An array of numbers, shape [n], or of vectors [n, width], float64, int64 where ``whole``; empty where it has
+        none or, with a warning, one of another type. Primvars are read without their indices."""
+        primvar = UsdGeom.Primvar(attribute)
+        got = primvar.ComputeFlattened(self.time) if primvar else attribute.Get(self.time) if attribute else None
+        made = np.zeros((0,) if width == 1 else (0, width), np.int64 if whole else np.float64)
+        values = made if got is None else np.asarray(got)
+        if values.ndim and not len(values):
+            return made
+        wanted = "iu" if whole else "fiu"
+        if values.ndim != made.ndim or values.shape[1:] != made.shape[1:] or values.dtype.kind not in wanted:
+            self.warn(attribute.GetPath(), f"holds {_brief(got)}, which is of the wrong type; it is ignored")
+            return made
+        return values.astype(made.dtype)
+
+
+def _brief(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= 80 else f"{text[:77]}..."
 
 
 def fits(value: Any, like: Any) -> bool:
@@ -110,7 +132,9 @@ def fits(value: Any, like: Any) -> bool:
         return isinstance(value, str)
     kind = type(like).__name__
     if isinstance(like, tuple) or (kind.startswith("Vec") and not kind.endswith("Array")):
-        return not isinstance(value, str) and hasattr(value, "__len__") and len(value) == len(like)
+        if isinstance(value, str) or not hasattr(value, "__len__") or len(value) != len(like):
+            return False
+        return all(fits(one, other) for one, other in zip(value, like, strict=True))
     if hasattr(like, "__len__"):
         return hasattr(value, "__len__") and not isinstance(value, str)
     return isinstance(value, type(like))

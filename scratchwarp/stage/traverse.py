@@ -96,7 +96,7 @@ def _instancer(
     stage = reading.stage
     targets = instancer.GetPrototypesRel().GetForwardedTargets()
     prototypes.update(t for t in targets if not t.HasPrefix(path))
-    chosen = np.asarray(instancer.GetProtoIndicesAttr().Get(reading.time) or [], np.int64)
+    chosen = reading.numbers(instancer.GetProtoIndicesAttr(), whole=True)
     mask = np.asarray(instancer.ComputeMaskAtTime(reading.time), bool)
     reading.budget.take(2000.0 * len(chosen), f"{reading.path}: {path}", f"{len(chosen)} instances")
     # With the prototypes' own transforms USD gives up on any index that is out of range; they are applied below.

@@ -21,7 +21,10 @@ ONCE = {
     2013: "grooves two hundred times as wide as they were apart left a ray without the pieces near it",
     2057: "a layer of grooves had curves without points",
     3085: "millions of scratches followed a map of directions before a few of them told that they are far too many",
+    3258: "a mesh's counts of corners were a word",
     3385: "the file of a texture was a string",
+    3442: "the file of a light was true or false",
+    3887: "a mesh's counts of corners were a file",
 }
 
 

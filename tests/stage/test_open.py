@@ -135,6 +135,13 @@ ODD = {
 def Mesh "m" (prepend apiSchemas = ["MaterialBindingAPI"]) {{ rel material:binding = </mat>\n{QUAD} }}""",
         ["/mat/s.inputs:diffuseColor", "'red'", "wrong type"],
     ),
+    "files": ('def DomeLight "d" { bool inputs:texture:file = 1 }', ["/d.inputs:texture:file", "True", "wrong type"]),
+    "arrays of vectors": (
+        'def Camera "c" { float2[] clippingRange = [(1, 2), (3, 4)] }',
+        ["/c.clippingRange", "wrong type"],
+    ),
+    "points": ('def Mesh "m" { float[] points = [1, 2, 3, 4] }', ["/m.points", "wrong type"]),
+    "counts": ('def Mesh "m" { asset faceVertexCounts = @a.png@ }', ["/m.faceVertexCounts", "wrong type"]),
 }
 
 
