@@ -21,7 +21,7 @@ from ..scene import Scene, Settings
 from ..scene.digest import digest
 from ..whole import whole
 from .error_cases import Case, cases
-from .knob_errors import MEASURED, Left, Rows, left, noise, summed_up
+from .knob_errors import MEASURED, Left, Rows, left, noise, summed_up, worst
 from .report import machine
 
 NOISE = "noise"
@@ -66,8 +66,10 @@ def calibrate_errors(
     lines = Lines(target.with_name(f"{target.name}.part"))
     known = [(name, scene) for name, scene in stages]
     jobs: list[tuple[Case, str, str]] = []
+    stage_of: dict[str, str] = {}
     for name, scene in known:
         for number, case in enumerate(cases(name, scene, Settings(width=width, spp=spp), tuple(knobs))):
+            stage_of[case.name] = name
             own = digest(scene_digest(case.scene), case.settings, machine()["versions"])
             jobs += [(case, own, what) for what in ((NOISE, *case.knobs) if number == 0 else case.knobs)]
     for done, (case, own, what) in enumerate(jobs):
@@ -87,17 +89,26 @@ def calibrate_errors(
         one.bias.update(row["bias"])
         one.noisier.update(row["noisier"])
     about = {"width": width, "spp": spp}
-    write(target, {name: own for name, own in found.items() if own.bias}, noises, about)
+    write(target, {name: own for name, own in found.items() if own.bias}, noises, about, stage_of)
     lines.file.unlink()
     return target
 
 
-def write(file: Path, stages: dict[str, Left], noises: Iterable[list[float]], about: dict[str, Any]) -> Path:
-    """Write what was measured of stages; ``noises``: as ``noise`` gives them; ``about``: what else is noted."""
+def write(
+    file: Path, stages: dict[str, Left], noises: Iterable[list[float]], about: dict[str, Any], stage_of: dict[str, str]
+) -> Path:
+    """Write what was measured.
+
+    ``stages``: by the name of the case; ``noises``: as ``noise`` gives them; ``about``: what else is noted;
+    ``stage_of``: case -> stage, of whose cases the worst counts.
+    """
     known = [found for found in noises if found[2] > 0.0]
     powers = [np.log(found[0] / found[2]) / np.log(16.0) for found in known]
-    bias = summed_up(found.bias for found in stages.values())
-    noisier = summed_up((found.noisier for found in stages.values()), 1.0)
+    groups: dict[str, list[Left]] = {}
+    for name, found in stages.items():
+        groups.setdefault(stage_of[name], []).append(found)
+    bias = summed_up(worst(found.bias for found in own) for own in groups.values())
+    noisier = summed_up((worst(found.noisier for found in own) for own in groups.values()), 1.0)
     record: dict[str, Any] = {
         "format": FORMAT,
         **machine(),

@@ -27,6 +27,8 @@ SHARE = 0.8
 SEEDS = (11, 12)
 FEW = {"grooves.lines": 4}
 """Samples a pixel at which a knob is measured that many samples make up for."""
+MORE = {"tables.resolution": 8, "tables.rays": 8}
+"""How many times as many samples knobs are measured with whose values draw other directions, which leaves noise."""
 NOISY = ("lights.coneTaps", "grooves.lines")
 """Knobs whose values differ in noise, too: means of some places of each footprint or cone, of more at dearer values."""
 
@@ -47,8 +49,9 @@ def left(scene: Scene, settings: Settings, names: Iterable[str] = MEASURED) -> L
     known, found = acting(make_plan(scene, settings)), Left()
     shots = Shots(scene, settings)
     for name in (n for n in names if n in known):
-        few = min(FEW.get(name, settings.spp or 1), settings.spp or 1)
-        own = shots if few == settings.spp else Shots(scene, replace(settings, spp=few))
+        spp = settings.spp or 1
+        count = min(FEW.get(name, spp), spp) * MORE.get(name, 1)
+        own = shots if count == settings.spp else Shots(scene, replace(settings, spp=count))
         best = pair(own, {name: KNOBS[name].reference})
         weight = weights(0.5 * (best[0] + best[1]))
         apart = _mean_square(best, weight)
@@ -92,6 +95,16 @@ def noise(scene: Scene, settings: Settings, counts: tuple[int, ...] = (2, 8, 32)
     best = pair(shots, {"spp": 4 * max(counts)})
     weight = weights(0.5 * (best[0] + best[1]))
     return [0.5 * _mean_square(pair(shots, {"spp": count}), weight) for count in counts]
+
+
+def worst(rows: Iterable[Mapping[str, Mapping[str, float]]]) -> Rows:
+    """knob -> value -> the greatest of several rows, those of one stage as it is and as it was changed."""
+    made: Rows = {}
+    for row in rows:
+        for name, values in row.items():
+            own = made.setdefault(name, {})
+            own.update({value: max(number, own.get(value, 0.0)) for value, number in values.items()})
+    return made
 
 
 def summed_up(stages: Iterable[Mapping[str, Mapping[str, float]]], least: float = 0.0) -> Rows:

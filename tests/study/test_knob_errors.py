@@ -3,7 +3,7 @@
 import pytest
 
 import scratchwarp as sw
-from scratchwarp.study.knob_errors import left, summed_up
+from scratchwarp.study.knob_errors import left, summed_up, worst
 
 from ..render import scenes as S
 
@@ -13,6 +13,11 @@ def test_biases_of_stages_are_summed_up_by_what_most_stay_below():
     made = summed_up(stages)["tables.rays"]
     assert made["8"] == pytest.approx(0.42)  # four fifths of five
     assert made["16"] == made["32"] == pytest.approx(0.03) and made["512"] == 0.0  # it never rises
+
+
+def test_of_one_stage_the_worst_counts():
+    rows = [{"tables.rays": {"8": 0.2, "16": 0.1}}, {"tables.rays": {"8": 0.3, "16": 0.01}}, {"pathDepth": {"1": 0.5}}]
+    assert worst(rows) == {"tables.rays": {"8": 0.3, "16": 0.1}, "pathDepth": {"1": 0.5}}
 
 
 def test_ratios_of_noise_are_never_below_one():
