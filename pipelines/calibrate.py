@@ -3,7 +3,7 @@
     python -m scratchwarp.pipelines.calibrate                      # prices into the user's cache folder
     python -m scratchwarp.pipelines.calibrate costs.json           # into a file: those that are shipped are made so
     python -m scratchwarp.pipelines.calibrate --errors             # what knobs leave, beside the user's prices
-    python -m scratchwarp.pipelines.calibrate errors.json --errors # into a file: those that are shipped are made so
+    python -m scratchwarp.pipelines.calibrate errors.json --errors # into a file
     python -m scratchwarp.pipelines.calibrate errors.json --errors --stages gold patterns --knobs lights.coneTaps
 
 Demo stages are authored and rendered part by part; ``--stages`` takes others than the usual ones. Errors are kept as
