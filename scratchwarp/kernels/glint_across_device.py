@@ -7,6 +7,7 @@ from ..reflectance.diffraction.outline_device import outline_transform
 from ..reflectance.diffraction.real_device import real
 from ..reflectance.diffraction.response_device import across_integral, depth_response, sinc2
 from .glint_arrays_device import GlintArrays, Strand, WaveLayer
+from .glint_lobes_device import lobe_at
 
 _vec5 = wp.types.vector(length=5, dtype=float)
 # Beyond so many cycles fringes are so fine that their mean is taken: in closed form of facets, of rectangles at 160
@@ -25,6 +26,9 @@ def across_value(a: GlintArrays, layer: WaveLayer, strand: Strand, wavelength: f
     """|P|^2 / lambda^2 of a strand's cross-section across it; ``g``: sum of the cosines, 2 for small angles."""
     ratio = strand.width / wavelength
     if layer.facets > 0:
+        lobe = lobe_at(a, layer, ratio * xi2, strand.depth / wavelength * g)
+        if lobe >= 0.0:
+            return ratio * ratio * lobe
         depth = wp.float64(strand.depth / wavelength)
         p = outline_transform(
             a.outlines, layer.outline, layer.facets, wp.float64(ratio), depth, wp.float64(xi2), wp.float64(g)

@@ -47,6 +47,8 @@ class WaveLayer:
         outline, facets: rows of its cross-section in ``GlintArrays.outlines``, none for a rectangle.
         angles: 1 where the phase that the depth gives depends on the directions. maps: in ``GlintArrays.maps``, or -1.
         fringes: 1 where ``GlintArrays.fringes`` holds its colours under lights without extent.
+        lobe, lobe_reaches, lobe_depths, lobe_first, lobe_even: the table of its facets' lobe in ``GlintArrays.lobes``
+            (``lobe_depths`` 0: none), see ``glint_lobes_device``.
     """
 
     wave: int
@@ -68,6 +70,11 @@ class WaveLayer:
     angles: int
     maps: int
     fringes: int
+    lobe: int
+    lobe_reaches: int
+    lobe_depths: int
+    lobe_first: float
+    lobe_even: int
 
 
 @wp.struct
@@ -124,6 +131,7 @@ class GlintArrays:
     share_colors: wp.array(dtype=wp.vec3)
     wides: wp.array(dtype=wp.vec3)
     outlines: wp.array(dtype=wp.vec4d)
+    lobes: wp.array(dtype=float)
     segments: wp.array(dtype=Segment)
     starts: wp.array(dtype=int)
     around_starts: wp.array(dtype=int)

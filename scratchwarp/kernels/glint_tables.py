@@ -1,10 +1,14 @@
 """Tables of colours of scratches that diffract."""
 
+from typing import Any
+
 import numpy as np
+import warp as wp
 
 from ..reflectance.diffraction.color import spectral_samples
 from ..scene import Wave
 from .glint_energy_device import BINS
+from .glint_lobes_device import PER_CYCLE, tabulate
 
 DEPTH_STEP = 0.006
 """Of ``wide_table`` [um]: a fringe of |D|^2 is at least 0.19 um deep; linear between, error 0.5 % of one."""
@@ -16,6 +20,9 @@ MOST_TERMS = 100_000_000
 """Of one table of a cross-section: a second or two."""
 MOST_NODES = 2_000_000
 """Of one table, 48 MB. Scratches that need more show no colours that a table would get right more cheaply."""
+
+MOST_LOBES = 1 << 24
+"""Facets at places of one table of a lobe: a second or two."""
 
 
 def wavelengths_of(wave: Wave) -> tuple[np.ndarray, np.ndarray]:
@@ -58,6 +65,26 @@ def depth_shares(deepest: float, roughness: float, outline: np.ndarray | None) -
     return np.concatenate([means, power @ weights], axis=1).astype(np.float32)
 
 
+def lobe_table(outline: np.ndarray, reach: float, deep: float, device: str = "cpu") -> tuple[np.ndarray, float] | None:
+    """``lobe_at``'s table, shape [depths, reaches] float32, and where its rows begin: 0 less a step where the lobe is
+    even. ``reach``, ``deep``: greatest arguments, in wavelengths; None where it would be too large."""
+    even = mirrored(outline)
+    rows = np.ceil(deep * float(PER_CYCLE)) + 5.0
+    reaches = np.ceil((1.0 if even else 2.0) * reach * float(PER_CYCLE)) + 6.0
+    if not rows * reaches * len(outline) <= MOST_LOBES:
+        return None
+    first = -(1.0 if even else np.ceil(reach * float(PER_CYCLE)) + 2.0) / float(PER_CYCLE)
+    facets: Any = wp.array(outline, dtype=wp.vec4d, device=device)
+    made: Any = wp.empty(int(rows * reaches), dtype=float, device=device)
+    wp.launch(tabulate, len(made), inputs=[facets, float(first), int(reaches)], outputs=[made], device=device)
+    return made.numpy().reshape(int(rows), int(reaches)), float(first)
+
+
+def mirrored(outline: np.ndarray) -> bool:
+    """Whether facets look the same from both sides, so that their lobe is even in xi_2."""
+    return bool(np.allclose(outline[::-1] * [-1, 1, 1, -1], outline, atol=1e-9))
+
+
 def wide_table(
     wave: Wave, depths: tuple[float, float], reach: float, spread: float, outline: np.ndarray | None = None
 ) -> np.ndarray | None:
@@ -94,8 +121,7 @@ def _outline_table(
 ) -> np.ndarray | None:
     """The same of facets: (pi / 2) integral of |p|^2 dX / lambda, p the transform over a width of 1."""
     fine = 4 * (reaches - 1) + 1
-    even = np.allclose(outline[::-1] * [-1, 1, 1, -1], outline, atol=1e-9)
-    if not even or len(depth) * fine * len(at) * len(outline) > MOST_TERMS:
+    if not mirrored(outline) or len(depth) * fine * len(at) * len(outline) > MOST_TERMS:
         return None
     x = np.linspace(0.0, reach, fine)[:, None] / at
     table = np.empty((len(depth), reaches, 2, 3), np.float32)

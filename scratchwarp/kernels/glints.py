@@ -24,7 +24,7 @@ from .glint_crowds import Crowds
 from .glint_energy_device import BINS
 from .glint_fringes import fringes
 from .glint_maps import GlintMaps, directions
-from .glint_tables import SHARES, bin_width, depth_shares, wavelengths_of, wide_table
+from .glint_tables import SHARES, bin_width, depth_shares, lobe_table, wavelengths_of, wide_table
 from .key import KernelKey
 
 COSINES = 33
@@ -239,6 +239,7 @@ def pack(
     stretched = 1e6 * float(np.sqrt(max((du * du).sum(1).max(), (dv * dv).sum(1).max())))
     wides: list[np.ndarray] = []
     outlines: list[np.ndarray] = []
+    lobes: list[np.ndarray] = []
     spectral = np.ones((len(numbers), COSINES, most), np.float32)
     for (m, k, v), number in numbers.items():
         w = plan.waves[m]
@@ -260,6 +261,11 @@ def pack(
         if own.outline is not None:
             row.outline, row.facets = sum(map(len, outlines)), len(own.outline)
             outlines.append(own.outline)
+            shortest = float(lams[which[m]].min())
+            if lobe := lobe_table(own.outline, 2.0 * widest / shortest, 2.0 * deepest / shortest, device):
+                row.lobe, row.lobe_first, row.lobe_even = sum(x.size for x in lobes), lobe[1], int(lobe[1] > -0.1)
+                row.lobe_depths, row.lobe_reaches = lobe[0].shape
+                lobes.append(lobe[0])
         shallowest = _shallowest(own, segments, number)
         table = None
         if key.glint_lookup and looks_up(w.wave):
@@ -292,6 +298,8 @@ def pack(
         arrays.maps = mapped.packed(scene, shape.arrays, device)
     if outlines:
         arrays.outlines = wp.array(np.concatenate(outlines), dtype=wp.vec4d, device=device)
+    if lobes:
+        arrays.lobes = floats(np.concatenate([x.ravel() for x in lobes]), float)
     if wides:
         arrays.wides = floats(np.concatenate([x.reshape(-1, 3) for x in wides]), wp.vec3)
     return PackedGlints(arrays, segments)
