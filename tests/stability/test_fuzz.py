@@ -23,6 +23,7 @@ ONCE = {
     2612: "the lobe of a cross-section of 64 facets was summed at each of a thousand places for each scratch",
     3085: "millions of scratches followed a map of directions before a few of them told that they are far too many",
     3258: "an instancer's indices were a word",
+    3346: "the same of a bell, twice a material",
     3385: "the file of a texture was a string",
     3442: "the file of a light was true or false",
     3887: "a mesh's counts of corners were a file",
