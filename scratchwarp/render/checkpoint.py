@@ -30,8 +30,7 @@ Sums = dict[str, np.ndarray]
 
 
 class Checkpoint:
-    """An open checkpoint of one render. ``samples`` [n]: of each tile that are in it; ``earlier``: tile number ->
-    (samples, color sums) of its pass before, where it was found."""
+    """An open checkpoint of one render. ``samples`` [n]: of each tile that are in it."""
 
     def __init__(
         self,
@@ -49,7 +48,6 @@ class Checkpoint:
         self._slot = _SLOT.size + pixel * max((t.width * t.height for t in tiles), default=0)
         self.samples = np.zeros(len(self._tiles), np.int64)
         self._next = np.zeros(len(self._tiles), np.int64)
-        self.earlier: dict[int, tuple[int, np.ndarray]] = {}
         described = {"about": dict(about), "tiles": len(self._tiles), "slot": self._slot}
         header = json.dumps(described, sort_keys=True).encode()
         if fresh:
@@ -75,9 +73,7 @@ class Checkpoint:
             found = [made._read(number, slot) for slot in (0, 1)]
             samples = [-1 if f is None else f[0] for f in found]
             best = int(np.argmax(samples))
-            known, other = found[best], found[1 - best]
-            if other is not None:
-                made.earlier[number] = other[0], other[1]["color"]
+            known = found[best]
             if known is not None:
                 made.samples[number], made._next[number] = known[0], 1 - best
                 for name, values in known[1].items():

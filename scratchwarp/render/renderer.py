@@ -23,7 +23,7 @@ from .interrupt import Control
 from .launch import loaded
 from .progress import Progress, silent
 from .tables import simulate_tables
-from .target import MOST, halving, noted, on_scale, says, until
+from .target import MOST, begins, halving, noted, on_scale, says, until
 from .trace import Job, Threads, Tracer
 
 if TYPE_CHECKING:
@@ -91,7 +91,7 @@ def render(
     compiled = time.perf_counter()
 
     x0, x1, y0, y1 = plan.window
-    canvas = Canvas(x1 - x0, y1 - y0, settings.tile)
+    canvas = Canvas(x1 - x0, y1 - y0, settings.tile, remembers=limit is not None)
     disk = None
     if checkpoint is not None:
         begin = Checkpoint.resume if resume else Checkpoint
@@ -139,15 +139,14 @@ def render(
                     snapshot(film(canvas.samples_of_pixels(), float("inf"), time.perf_counter()))
 
         progress(canvas.done, canvas.pixels * samples, "trace")
-        trace(canvas.jobs(samples), done)
+        if jobs := canvas.jobs(samples):
+            trace(jobs, done)
 
-    begun = max(spp, int(canvas.samples.max(initial=0)))
-    before = canvas.before(disk.earlier, begun) if disk is not None and begun > spp else None
+    begun = int(canvas.samples.max(initial=0))
     try:
-        to(begun)
-        samples, error = until(
-            limit, spp, lambda: canvas.sums, lambda first, count: to(first + count), begun, before, most
-        )
+        for count in [begun, *(n for n in (begins(spp) if limit is not None else [spp]) if n > begun)]:
+            to(count)
+        samples, error = until(limit, max(spp, begun), lambda: canvas.sums, canvas.passes, to, most)
         error += left
     finally:
         if disk is not None:

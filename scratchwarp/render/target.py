@@ -1,18 +1,18 @@
 """How far an image still is from what more samples would make of it, and rendering until that is little enough.
 
-The spread of the samples of each pixel says what error as many independent ones would leave. Ours lie more evenly. How
-much that gains is told by what the last pass changed, all over the image: if errors squared fall as n^-p, the mean of
-n samples is off from that of the ``before`` that were there by (n / before)^p - 1 times its remaining error squared,
-and p follows. Where a few bright samples make the error nothing is gained: there both estimates are averaged. The error
-is relative to the luminance that a pixel would have without noise: its own, drawn towards that of its neighbours as far
-as its noise allows, so that a pixel with one bright sample does not count as a bright pixel. Pixels that missed what is
-bright seem to have no error: their neighbours tell, so that the ratio of means over 5 x 5 pixels is looked at, too, and
-the larger of both counts, up to three times the other. One and a half times the standard error of the mean over pixels
-is added: where few of them carry most of the error, less is known of it; and one part in n, for few samples tell little
-of their spread.
+What samples changed since the image had about half of them tells its error: if errors squared fall as n^-p, then
+the mean of n samples is off from that of the first m by (n / m)^p - 1 times its error squared. Bright samples that are
+in the image by chance are in that change, too, just as they are in its error, and samples that lie more evenly than
+chance leave little of it. p is 1 for independent samples; it is taken for greater as far as the change since a fourth
+of the samples says so beyond two of its standard errors.
+
+The error is relative to the luminance that a pixel would have without noise: its own, drawn towards the geometric
+mean of the eight around it as far as its noise allows (a positive-part James-Stein estimate), so that one with a single
+bright sample does not count as a bright pixel. One and a half times the standard error of the mean over pixels is
+added: where few of them carry most of the error, less is known of it; and one part in n, for few samples tell little.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -21,38 +21,48 @@ FLOOR = 0.01
 """Share of the squared mean luminance that is added to each pixel's own: black ones do not count without end."""
 MOST = 64
 """A render with an error target has at most so many times the samples that were asked for or predicted."""
-RARE = 10.0
-"""Pixels whose surroundings have so many times the mean error owe it to rare bright samples."""
-STEEPEST = 1.25
-"""No faster than with this power do errors squared fall with samples, as far as is relied on."""
 DOUBT = 1.5
 """Standard errors of the estimate that are added to it."""
-MISSED = 3.0
-"""No more than so many times what the pixels tell by themselves is believed of what their neighbours tell."""
-CLIP = 8.0
-"""Neighbours brighter than so many times their median are cut there before they are averaged."""
-EDGE = 2
+STEEPEST = 1.6
+"""No faster than with this power do errors squared fall with samples, as far as is relied on."""
+KEPT = 4
+"""Earlier states of an image that are kept: each with at least ``APART`` times the samples of the one before it, so
+that one has about half of the samples and one about a fourth."""
+APART = 1.3
+Passes = Sequence[tuple[np.ndarray, int]]
 _LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 
-def remaining(sums: Mapping[str, Any], samples: int, before: tuple[np.ndarray, int] | None = None) -> float:
+def remaining(sums: Mapping[str, Any], samples: int, passes: Passes = ()) -> float:
     """Estimated relMSE of an image against one of many more samples; infinite for one sample.
 
     What samples do not cure, such as coarse tables, is not in it.
 
-    ``sums``: color [h, w, 3], square and invalid [h, w] over ``samples`` of each pixel. ``before``: an earlier (color,
-    samples) of the same image.
+    ``sums``: color [h, w, 3], square and invalid [h, w] over ``samples`` of each pixel. ``passes``: (color, samples) of
+    the same image as it was earlier; without any the spread of the samples tells, as if they were independent.
     """
     if samples < 2:
         return float("inf")
-    square, mean = squared(sums, samples, before), luminance(sums, samples)
+    color = np.asarray(sums["color"], np.float64)
+    mean = luminance(sums, samples)
     floor = FLOOR * float(mean.mean()) ** 2
     if floor <= 0.0:
         return 0.0
-    alone = square / (shrunk(sums, samples, square) ** 2 + floor)
-    together = _box(square) / (_box(mean) ** 2 + floor)
-    own, near = (float(off.mean() + DOUBT * off.std() / np.sqrt(off.size)) for off in (alone, together))
-    return max(own, min(near, MISSED * own)) * (1.0 + 1.0 / samples)
+    known = [(_changed(color, samples, *one), samples / one[1]) for one in passes if 0 < one[1] < samples]
+    if known:
+        changed, times = min(known, key=lambda one: abs(np.log(one[1] / 2.0)))
+        square = changed / (times - 1.0)
+    else:
+        square = spread(sums, samples)
+    off = square / (_squared_luminance(mean, square, floor) + floor)
+    error, doubt = float(off.mean()), float(off.std()) / np.sqrt(off.size)
+    longer = [one for one in known if one[1] > 1.2 * times]
+    if longer and error > 0.0:
+        far, wide = min(longer, key=lambda one: abs(np.log(one[1] / 4.0)))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            scale = np.where(square > 0.0, off / square, 0.0)
+        error *= gained(changed * scale, times, far * scale, wide)
+    return (error + DOUBT * doubt) * (1.0 + 1.0 / samples)
 
 
 def on_scale(variance: np.ndarray, color: np.ndarray, noise: float) -> np.ndarray:
@@ -81,71 +91,45 @@ def luminance(sums: Mapping[str, Any], samples: int) -> np.ndarray:
     return np.asarray(sums["color"], np.float64) @ _LUMINANCE / _good(sums, samples)
 
 
-def squared(sums: Mapping[str, Any], samples: int, before: tuple[np.ndarray, int] | None = None) -> np.ndarray:
-    """Estimated square of each pixel's error, mean over channels, [h, w]; arguments as of ``remaining``."""
+def spread(sums: Mapping[str, Any], samples: int) -> np.ndarray:
+    """Square of each pixel's error by the spread of its samples, were they independent, [h, w]."""
     good = _good(sums, samples)
-    mean = luminance(sums, samples)
-    spread = np.maximum(np.asarray(sums["square"], np.float64) / good - mean**2, 0.0) / np.maximum(good - 1.0, 1.0)
-    if before is None or not 0 < before[1] < samples:
-        return spread
-    color, count = before
-    change = np.asarray(sums["color"], np.float64) / samples - np.asarray(color, np.float64) / count
-    moved = (change**2).mean(axis=-1) * (count / (samples - count))
-    both = 0.5 * (spread + moved)
-    scale = 1.0 / (shrunk(sums, samples, both) ** 2 + max(FLOOR * float(mean.mean()) ** 2, 1e-300))
-    around = _box(spread) * scale
-    rare = around > RARE * around.mean()
-    usual = float((spread * scale)[~rare].sum())
-    gained = evenness(float((moved * scale)[~rare].sum()) / usual if usual > 0.0 else 1.0, samples, count)
-    return np.where(rare, both, gained * spread)
+    variance = np.asarray(sums["square"], np.float64) / good - luminance(sums, samples) ** 2
+    return np.maximum(variance, 0.0) / np.maximum(good - 1.0, 1.0)
 
 
-def evenness(moved: float, samples: int, before: int) -> float:
-    """What samples leave over what independent ones would, n^(1 - p): ``moved`` is what the ones since ``before``
-    changed, 1 for independent ones (more than that is taken as it is), and falls with p; so that of all p up to
-    ``STEEPEST`` the one that fits best is taken."""
-    if moved >= 1.0:
-        return moved
-    p = np.linspace(1.0, STEEPEST, 51)
-    ratio = samples / before
-    left = float(samples) ** (1.0 - p)
-    return float(left[np.abs(left * (ratio**p - 1.0) / (ratio - 1.0) - moved).argmin()])
+def gained(near: np.ndarray, times: float, far: np.ndarray, wide: float) -> float:
+    """What more evenly spread samples leave of the error that independent ones would, at most 1.
+
+    ``near``, ``far``: changes squared of pixels since there were ``times`` and ``wide`` times fewer samples. Their
+    ratio is (wide^p - 1) / (times^p - 1); two standard errors are taken off.
+    """
+    ratio = float(far.mean() / near.mean())
+    ratio -= 2.0 * float((far - ratio * near).std()) / np.sqrt(near.size) / float(near.mean())
+    p = np.linspace(1.0, STEEPEST, 61)
+    fits = float(p[np.abs((wide**p - 1.0) / (times**p - 1.0) - ratio).argmin()])
+    return float((times - 1.0) / (times**fits - 1.0))
 
 
-def shrunk(sums: Mapping[str, Any], samples: int, square: np.ndarray) -> np.ndarray:
-    """Luminance of each pixel, drawn towards the mean of its neighbours as far as ``square`` allows (a positive-part
-    James-Stein estimate), [h, w]."""
-    mean = luminance(sums, samples)
-    middle = _median(mean)
-    around = _box(np.minimum(mean, CLIP * middle + 0.1 * mean.mean()))
-    noise = np.maximum(square, 0.3 * np.minimum(_box(square), around**2))
-    off = mean - around
-    keep = np.clip(1.0 - 2.0 * noise / np.maximum(off**2, 1e-30), 0.0, 1.0)
-    return around + keep * off
+def _changed(color: np.ndarray, samples: int, earlier: np.ndarray, count: int) -> np.ndarray:
+    change = color / samples - np.asarray(earlier, np.float64) / count
+    return np.asarray((change**2).mean(axis=-1))
+
+
+def _squared_luminance(mean: np.ndarray, square: np.ndarray, floor: float) -> np.ndarray:
+    """Square of the luminance of each pixel, drawn towards the geometric mean of those around it as far as its error
+    ``square`` allows, [h, w]. ``floor`` is added to squares before they are multiplied."""
+    wide = np.pad(mean, 1, mode="reflect" if min(mean.shape) > 1 else "edge")
+    logs, (height, width) = np.log(wide**2 + floor), mean.shape
+    total = sum(logs[j : j + height, i : i + width] for j in range(3) for i in range(3)) - logs[1:-1, 1:-1]
+    around = np.maximum(np.exp(total / 8.0) - floor, 0.0)
+    off = mean - np.sqrt(around)
+    keep = np.clip(1.0 - square / np.maximum(off**2, 1e-300), 0.0, 1.0)
+    return np.asarray(around + keep * (mean**2 - around))
 
 
 def _good(sums: Mapping[str, Any], samples: int) -> np.ndarray:
     return np.maximum(samples - np.asarray(sums["invalid"], np.float64), 1.0)
-
-
-def _shifted(values: np.ndarray, axis: int) -> list[np.ndarray]:
-    pad = [(0, 0), (0, 0)]
-    pad[axis] = (EDGE, EDGE)
-    wide = np.pad(values, pad, mode="edge")
-    size = values.shape[axis]
-    return [np.take(wide, range(k, k + size), axis) for k in range(2 * EDGE + 1)]
-
-
-def _box(values: np.ndarray) -> np.ndarray:
-    """Mean over 5 x 5 pixels."""
-    rows = np.mean(_shifted(values, 0), axis=0)
-    return np.asarray(np.mean(_shifted(np.asarray(rows), 1), axis=0))
-
-
-def _median(values: np.ndarray) -> np.ndarray:
-    """Median over 5 rows of the median over 5 columns."""
-    rows = np.partition(np.stack(_shifted(values, 0)), EDGE, axis=0)[EDGE]
-    return np.asarray(np.partition(np.stack(_shifted(rows, 1)), EDGE, axis=0)[EDGE])
 
 
 def later(samples: int) -> int:
@@ -158,9 +142,10 @@ def later(samples: int) -> int:
 
 
 def ahead(samples: int, error: float, target: float, most: int) -> int:
-    """The number of samples to look at next: what is surely needed is not looked at."""
-    needed, at = 0.85 * samples * error / target if np.isfinite(error) else 0.0, later(samples)
-    while later(at) <= min(needed, 4 * samples):
+    """The number of samples to look at next: up to twice as many, but not more than half of what the estimate asks for,
+    which few samples overrate by as much."""
+    needed, at = 0.5 * samples * error / target if np.isfinite(error) else 0.0, later(samples)
+    while later(at) <= min(needed, 2 * samples):
         at = later(at)
     return min(at, most)
 
@@ -169,28 +154,25 @@ def until(
     target: float | None,
     samples: int,
     sums: Callable[[], Mapping[str, Any]],
-    more: Callable[[int, int], None],
-    begun: int = 0,
-    before: tuple[np.ndarray, int] | None = None,
+    passes: Callable[[], Passes],
+    more: Callable[[int], None],
     most: int | None = None,
 ) -> tuple[int, float]:
-    """(samples, estimated error): ``more(first, count)`` adds samples until ``sums()`` are within ``target``, or there
-    are ``most`` (``MOST`` times as many as at the start, ``samples``). None adds none.
-
-    ``begun``: samples that are there already, of a render that goes on; ``before``: (color sums, samples) of the pass
-    before, without which it may go on otherwise than at once.
-    """
+    """(samples, estimated error): ``more(count)`` renders to so many samples until ``sums()``, which were ``passes()``
+    earlier, are within ``target``, or there are ``most`` (``MOST`` times as many as there are, ``samples``). None adds
+    none."""
     most = MOST * samples if most is None else most
-    samples = max(samples, begun)
     while True:
-        now = sums()
-        error = remaining(now, samples, before)
+        error = remaining(sums(), samples, passes())
         if target is None or error <= target or samples >= most:
             return samples, error
-        before = (np.array(now["color"], np.float32), samples)
-        count = ahead(samples, error, target, most)
-        more(samples, count - samples)
-        samples = count
+        samples = ahead(samples, error, target, most)
+        more(samples)
+
+
+def begins(first: int) -> list[int]:
+    """Passes to the first estimate: to a fourth of its samples, to half of them, to all."""
+    return sorted({max(first // 4, 1), max(first // 2, 1), first})
 
 
 def noted(error: float) -> dict[str, float]:
