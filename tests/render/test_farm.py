@@ -35,9 +35,9 @@ def test_four_workers_one_killed_in_the_middle(tmp_path, monkeypatch):
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join(p for p in sys.path if p))
     world, plan = planned()
     first = sw.render(world, plan)
-    world, plan = planned(spp=2, max_error=first.stats["error"] / 16.0)
+    world, plan = planned(spp=2, max_error=first.stats["error"] / 14.0)
     alone = sw.render(world, plan)
-    assert alone.stats["samples"] > 3 * 48 * 48 and not alone.warnings
+    assert alone.stats["samples"] > 2 * 48 * 48 and not alone.warnings
     file = tmp_path / "part"
     with Farm("local:4") as farm:
         killed = []
