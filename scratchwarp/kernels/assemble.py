@@ -99,6 +99,7 @@ def kernel_key(scene: Scene, plan: EffectPlan) -> KernelKey:
         responses=tuple(n for n, r in RESPONSES.items() if on(r.effect) and (distributions or r.base)),
         closed_form=bool(distributions) and on("lights.closedForm"),
         cone_taps=bool(distributions) and on("lights.closedForm") and any(uneven(light) for light in scene.lights),
+        small_lights=bool(distributions) and on("lights.closedForm") and on("lights.small"),
         sample_lights=bool(distributions) and on("lights.sampleLights"),
         sample_cones=bool(distributions) and on("lights.sampleCones"),
     )

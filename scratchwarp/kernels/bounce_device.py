@@ -30,9 +30,12 @@ class Scatter:
     diffuse_share: wp.vec3
 
 
-def make_bounce(key: KernelKey, rotated, emission_at):
-    """(choose, scatter, glow, pass_through, pass_probability), compiled for ``key``."""
-    gather = make_gather(key)
+def make_bounce(key: KernelKey, rotated, emission_at, small=None):
+    """(choose, scatter, glow, pass_through, pass_probability), compiled for ``key``; ``small``: of
+    ``make_small_lights``."""
+    consider, shine = small or (None, None)
+    gather = make_gather(key, consider)
+    covering = make_gather(key)
     terms_of, drawn = make_lobe_terms(key)
     place = make_place(key)
 
@@ -67,6 +70,10 @@ def make_bounce(key: KernelKey, rotated, emission_at):
         u_lobe: wp.vec2,
         u_more: wp.vec2,
         resolved: int,
+        arrays: MaterialArrays,
+        lights: LightSet,
+        p: wp.vec3,
+        u_aside: wp.vec2,
     ) -> Lobe:
         """Draw the scratches of one layer or the base, in proportion to what each is likely to reflect (Eq. 4)."""
         lobe = Lobe()
@@ -75,17 +82,24 @@ def make_bounce(key: KernelKey, rotated, emission_at):
         lobe.w_specular = 1.0
         if wp.static(key.scratches):
             if m.layers > 0:
-                laid = gather(g, scratches, m, s, frame, step_x, step_y, u_lobe[1], u_more[1], resolved)
+                laid = gather(
+                    g, scratches, m, s, frame, step_x, step_y, u_lobe[1], u_more[1], resolved, lights, wo, p, u_aside[1]
+                )
+                if wp.static(shine is not None):
+                    if laid.crossed.total > 0.0:
+                        lobe.sent = wp.static(shine)(
+                            g, arrays, scratches, lights, frame.n, s.ng, wo, p, base.f0, laid.crossed, u_aside[0]
+                        )
                 lobe.w_specular = 1.0 - laid.covered
                 lobe.w_diffuse = 1.0 - laid.covered + laid.kept
                 if laid.chosen >= 0:
                     kept = lobe.w_diffuse - lobe.w_specular
                     of_base = lobe.w_specular * largest(base_albedo(base, to_local(frame, wo)))
                     of_base += kept * largest(base.diffuse)
-                    p = laid.weight / wp.max(laid.weight + of_base, 1.0e-20)
-                    if u_lobe[0] < p:
+                    chance = laid.weight / wp.max(laid.weight + of_base, 1.0e-20)
+                    if u_lobe[0] < chance:
                         layer = scratches.layers[laid.chosen]
-                        lobe.scale = laid.weight / (p * layer.weight)
+                        lobe.scale = laid.weight / (chance * layer.weight)
                         lobe.scratch = 1
                         lobe.frame = frame_with_tangent(frame.n, laid.direction)
                         lobe.wo = to_local(lobe.frame, wo)
@@ -113,7 +127,7 @@ def make_bounce(key: KernelKey, rotated, emission_at):
                             if wp.static(key.tints):
                                 lobe.tint = lent_tint(base.f0, layer.f0, lobe.sin_theta)
                     else:
-                        lobe.scale = 1.0 / (1.0 - p)
+                        lobe.scale = 1.0 / (1.0 - chance)
         if lobe.scratch == 0:
             lobe.frame = frame
             if wp.static(key.measured):
@@ -133,6 +147,9 @@ def make_bounce(key: KernelKey, rotated, emission_at):
                     lobe.w_specular *= 1.0 - through
                 else:
                     lobe.scale *= 1.0 - through
+            if wp.static(shine is not None):
+                there = wp.where(cut_out(m), 1.0 - through, 1.0) / wp.max(1.0 - passing, 1.0e-6)
+                lobe.sent = wp.vec4(there * lobe.sent[0], there * lobe.sent[1], there * lobe.sent[2], lobe.sent[3])
         return lobe
 
     @wp.func
@@ -192,6 +209,7 @@ def make_bounce(key: KernelKey, rotated, emission_at):
         u_lobe: wp.vec2,
         u_more: wp.vec2,
         resolved: int,
+        lights: LightSet,
     ) -> wp.vec3:
         """What specular reflection and scratches leave of light that goes straight through (all of it for cut-outs).
 
@@ -202,7 +220,9 @@ def make_bounce(key: KernelKey, rotated, emission_at):
             result = result - base_fresnel(base, wp.dot(s.ns, wo))
             if wp.static(key.scratches):
                 if m.layers > 0:
-                    laid = gather(g, scratches, m, s, frame, step_x, step_y, u_lobe[1], u_more[1], resolved)
+                    laid = covering(
+                        g, scratches, m, s, frame, step_x, step_y, u_lobe[1], u_more[1], resolved, lights, wo, s.p, 0.0
+                    )
                     result = (1.0 - laid.covered + laid.kept) * result
         return result
 

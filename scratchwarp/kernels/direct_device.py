@@ -29,6 +29,7 @@ from .key import KernelKey
 from .lobe_device import Lobe, largest, mirrored_at, multiplier, power_heuristic
 from .lobe_terms_device import make_lobe_terms
 from .material_device import MaterialArrays, cut_out
+from .small_lights_device import SMALL, caps_of
 from .world_device import LightSet
 
 PSI = wp.constant(0.5 * 3.14159265 / 180.0)  # half the support of one degree
@@ -120,6 +121,7 @@ def make_direct(key: KernelKey, transmittance):
 
     linked, arrives = make_arrives(key, transmittance)
     from_cone = make_cone_lights(key, models, arrives)
+    caps = caps_of(key, models)
 
     @wp.func
     def on_base(responses: ResponseArrays, lobe: Lobe, light: Light, ls: LightSample, ng: wp.vec3) -> wp.vec3:
@@ -195,9 +197,14 @@ def make_direct(key: KernelKey, transmittance):
                         if wp.static(integrated[j]):
                             if lobe.scratch == 1 and light.delta == 0:
                                 closed = 1
-                                received = wp.static(from_cone[j])(g, arrays, tables, lights, light, p, ng, lobe, u)
-                                total += wp.vec3(received[0], received[1], received[2])
-                                rays += received[3]
+                                wide = int(1)
+                                if wp.static(caps[j] is not None):
+                                    if wp.static(caps[j])(light, p)[3] < SMALL:
+                                        wide = 0  # all layers were asked
+                                if wide == 1:
+                                    received = wp.static(from_cone[j])(g, arrays, tables, lights, light, p, ng, lobe, u)
+                                    total += wp.vec3(received[0], received[1], received[2])
+                                    rays += received[3]
                         if lobe.scratch == 1 and closed == 0:
                             if light.delta == 1 or wp.static(sought[j]):
                                 toward = wp.vec3(0.0, 0.0, 1.0)

@@ -38,6 +38,7 @@ class KernelKey:
             they are as statistical as the others; groove_tapers: their sizes change along them.
         closed_form: light along the cones of scratches is integrated; cone_taps: some of those lights are not even.
         sample_lights, sample_cones: scratches look for the other lights by drawing from these, from their own cone.
+        small_lights: all layers' scratches are asked for small lights.
     """
 
     lights: tuple[str, ...] = ()
@@ -93,6 +94,7 @@ class KernelKey:
     cone_taps: bool = False
     sample_lights: bool = False
     sample_cones: bool = False
+    small_lights: bool = False
 
     @property
     def scratches(self) -> bool:

@@ -18,18 +18,45 @@ from .key import KernelKey
 from .lobe_device import Layers
 from .maps_device import follow, in_pattern, laid_along, masked, oriented
 from .material_device import MaterialData
-from .world_device import ScratchSet
+from .world_device import LightSet, ScratchSet
 
 # Layers that cover less than this are culled (Raymond 2016 section 6.1).
 SMALLEST_COVERAGE = wp.constant(1.0e-6)
 
 
-def make_gather(key: KernelKey):
-    """Device function that runs through a material's layers, compiled for the distributions of ``key``."""
+def make_gather(key: KernelKey, consider=None):
+    """Device function that runs through a material's layers, compiled for the distributions of ``key``; ``consider``:
+    what each is to be asked of small lights (``small_lights_device``)."""
     patterns = [name for name in key.distributions if name != "curves"]
     functions = [device_function(name, key.variation) for name in patterns]
     numbers = [kind_number(name) for name in patterns]
     strokes_number = kind_number("curves")
+
+    @wp.func
+    def laid_to(
+        frame: Frame,
+        s: Surface,
+        du: wp.vec3,
+        dv: wp.vec3,
+        flat: wp.vec3,
+        across: wp.vec3,
+        direction: wp.vec2,
+        sx: float,
+        sy: float,
+        stroke: wp.vec3,
+    ) -> wp.vec3:
+        """From pattern space to the surface: along the mapped direction, as an angle from dP/du."""
+        mapped = du * (direction[0] / sx) + dv * (direction[1] / sy) + stroke
+        along = wp.dot(mapped, flat)
+        aside = wp.dot(mapped, across)
+        norm = wp.sqrt(along * along + aside * aside)
+        if norm > 0.0:
+            along = along / norm
+            aside = aside / norm
+        else:
+            along = 1.0
+        side = wp.where(s.outside == 1, aside, -aside)
+        return along * frame.x + side * frame.y
 
     @wp.func
     def covered(layer: LayerData, q: wp.vec2d, scale: wp.vec2d, ax: wp.vec2, ay: wp.vec2, phase: float) -> LayerHit:
@@ -51,6 +78,10 @@ def make_gather(key: KernelKey):
         phase: float,
         u: float,
         resolved: int,
+        lights: LightSet,
+        wo: wp.vec3,
+        p: wp.vec3,
+        aside: float,
     ) -> Layers:
         """``step_x``, ``step_y``: edges of the footprint in the triangle's plane [m]; ``frame``: x the tangent;
         ``resolved`` 1: what may be laid out groove by groove is."""
@@ -71,6 +102,8 @@ def make_gather(key: KernelKey):
         xi = float(u)
         result = Layers()
         result.chosen = -1
+        if wp.static(consider is not None):
+            result.crossed.bits = pcg_hash(random_bits(aside))
         met = LayerHit()
         for k in range(m.layers):
             layer = scratches.layers[m.first_layer + k]
@@ -118,26 +151,26 @@ def make_gather(key: KernelKey):
                     kept += hit.alpha
                 part = hit.alpha * layer.weight
                 weight += part
-                p = part / wp.max(weight, 1.0e-30)
-                if xi < p:
-                    xi = xi / p
+                chance = part / wp.max(weight, 1.0e-30)
+                along_it = wp.vec3(0.0, 0.0, 0.0)
+                if wp.static(consider is not None):
+                    along_it = laid_to(frame, s, du, dv, flat, across, hit.direction, sx, sy, stroke)
+                    if layer.table >= 0 and layer.response < 0:
+                        number = m.first_layer + k
+                        result.crossed = wp.static(consider)(
+                            result.crossed, scratches, lights, frame.n, s.ng, wo, p, s.instance, number, hit, along_it,
+                            phase,
+                        )  # fmt: skip
+                if xi < chance:
+                    xi = xi / chance
                     result.chosen = m.first_layer + k
                     result.table = layer.table
                     met = hit
-                    # from pattern space to the surface: along the mapped direction, as an angle from dP/du
-                    mapped = du * (hit.direction[0] / sx) + dv * (hit.direction[1] / sy) + stroke
-                    along = wp.dot(mapped, flat)
-                    aside = wp.dot(mapped, across)
-                    norm = wp.sqrt(along * along + aside * aside)
-                    if norm > 0.0:
-                        along = along / norm
-                        aside = aside / norm
-                    else:
-                        along = 1.0
-                    side = wp.where(s.outside == 1, aside, -aside)
-                    result.direction = along * frame.x + side * frame.y
+                    if wp.static(consider is None):
+                        along_it = laid_to(frame, s, du, dv, flat, across, hit.direction, sx, sy, stroke)
+                    result.direction = along_it
                 else:
-                    xi = (xi - p) / wp.max(1.0 - p, 1.0e-7)
+                    xi = (xi - chance) / wp.max(1.0 - chance, 1.0e-7)
         if wp.static(key.variation):
             if result.chosen >= 0 and result.table >= 0:
                 bits = pcg_hash(random_bits(phase) ^ wp.uint32(0x5E3779B9))
@@ -150,6 +183,8 @@ def make_gather(key: KernelKey):
         result.covered = 1.0 - bare
         result.kept = kept * share
         result.weight = weight * share
+        if wp.static(consider is not None):
+            result.crossed.alpha *= share
         result.xi = wp.clamp(xi, 0.0, 0.9999999)
         return result
 

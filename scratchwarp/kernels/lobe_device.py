@@ -11,6 +11,21 @@ wp.set_module_options({"enable_backward": False})
 
 
 @wp.struct
+class Crossed:
+    """A pair of a layer and a small light on its scratches' cones, drawn by what it reflects: ``own`` of ``total``."""
+
+    total: float
+    own: float
+    alpha: float  # what the layer covers
+    layer: int
+    table: int
+    kind: int  # of the light
+    light: int
+    along: wp.vec3  # the scratches
+    bits: wp.uint32
+
+
+@wp.struct
 class Lobe:
     """One reflecting lobe at a point, ``scale`` holding 1 / probability of having chosen it."""
 
@@ -27,6 +42,7 @@ class Lobe:
     sin_theta: float  # of the incident cone, sin(theta_i) = -sin(theta_o)
     diffuse_share: wp.vec3  # part of the base's value that is diffuse in the direction that was sampled from it
     response: ResponseAt  # in place of ``base``; kind 0: none
+    sent: wp.vec4  # light of small lights along the cones of all scratches there, and the rays it took
 
 
 @wp.struct
@@ -40,6 +56,7 @@ class Layers:
     direction: wp.vec3  # of the chosen scratches, in the tangent plane
     xi: float  # what is left of the random number
     table: int  # of the chosen scratches
+    crossed: Crossed
 
 
 @wp.func

@@ -11,7 +11,7 @@ from ..reflectance.base_device import Base, base_albedo
 from .base_at_device import make_base_at
 from .bounce_device import Scatter, make_bounce
 from .camera_device import CameraData, footprint_step, lens_point, orthographic_ray, perspective_ray
-from .direct_device import MOST_PASSES, make_direct, make_transmittance
+from .direct_device import MOST_PASSES, make_arrives, make_direct, make_transmittance, models_of
 from .film_device import FilmArrays, Window
 from .geometry_device import (
     Geometry,
@@ -29,6 +29,7 @@ from .highlights_device import highlights_of, make_place
 from .key import KernelKey
 from .lobe_device import Lobe, largest, luminance
 from .material_device import MaterialArrays
+from .small_lights_device import ASIDE, make_small_lights
 from .stamp import stamp
 from .world_device import LightSet, ScratchSet
 
@@ -47,7 +48,8 @@ def make_kernel(key: KernelKey):
     direct, seen = make_direct(key, transmittance)
     glints = make_glints(key, transmittance) if key.glints else None
     spot_at, grooves, is_near, handed = make_grooves(key, transmittance) if key.grooves else (None,) * 4
-    choose, scatter, glow, pass_through, pass_probability = make_bounce(key, rotated, emission_at)
+    small = make_small_lights(key, models_of(key), *make_arrives(key, transmittance)) if key.small_lights else None
+    choose, scatter, glow, pass_through, pass_probability = make_bounce(key, rotated, emission_at, small)
 
     @wp.kernel(module="unique", module_options={"enable_backward": False})
     def render_pixels(
@@ -186,8 +188,9 @@ def make_kernel(key: KernelKey):
                     if wp.static(key.opacity):
                         if through > 0.0 and glass == 0:
                             straight = through * pass_through(
-                                g, scratches, m, base, s, frame, wo, step_x, step_y, u_lobe, u_more, resolved
-                            )
+                                g, scratches, m, base, s, frame, wo, step_x, step_y, u_lobe, u_more, resolved,
+                                lights,
+                            )  # fmt: skip
                             passing = pass_probability(m, through, straight)
                     if wp.static(key.groove_glass):
                         # what left grooves aside of where it met them starts on the wrong side where the surface bends
@@ -252,9 +255,12 @@ def make_kernel(key: KernelKey):
                                 if glass == 1:
                                     clear = through
                                     through = 0.0
+                            u_aside = wp.vec2(0.0, 0.0)
+                            if wp.static(small is not None):
+                                u_aside = sobol_2d(index, pair, pcg_hash(seed ^ ASIDE))
                             lobe = choose(
                                 g, scratches, m, s, frame, base, wo, through, passing, step_x, step_y, u_lobe, u_more,
-                                resolved,
+                                resolved, arrays, lights, p, u_aside,
                             )  # fmt: skip
                             received = wp.vec4(0.0, 0.0, 0.0, 0.0)
                             out = Scatter()
@@ -309,6 +315,8 @@ def make_kernel(key: KernelKey):
                                     seed,
                                 )
                                 out = scatter(scratches.tables, scratches.responses, lobe, s, u_base, u_more[1])
+                            if wp.static(small is not None):
+                                arriving = throughput
                             if wp.static(key.glints):
                                 if lobe.scratch == 0:
                                     throughput = wp.cw_mul(throughput, kept)
@@ -320,6 +328,14 @@ def make_kernel(key: KernelKey):
                             if wp.static(key.tints):
                                 if lobe.scratch == 1:
                                     lit = wp.cw_mul(lit, lobe.tint)
+                            if wp.static(small is not None):
+                                if depth < most:
+                                    sent = wp.vec3(lobe.sent[0], lobe.sent[1], lobe.sent[2])
+                                    if depth == 0:
+                                        diffracted += wp.cw_mul(arriving, sent)
+                                    else:
+                                        lit += wp.cw_mul(arriving, sent)
+                                    rays += int(lobe.sent[3])
                             rays += int(received[3])
                             step = wp.cw_mul(throughput, out.weight)
                             lobe.diffuse_share = out.diffuse_share

@@ -12,10 +12,13 @@ import numpy as np
 from ..lights.registry import MODELS
 from ..reflectance.responses import RESPONSES
 from ..scene import (
+    CylinderLight,
+    DiskLight,
     DistantLight,
     DomeLight,
     Material,
     PreviewSurface,
+    RectLight,
     Scene,
     ScratchSurface,
     Settings,
@@ -31,6 +34,8 @@ from .wave_effects import WAVE_EFFECTS
 
 MOST_SMOOTH = 0.03
 """GGX alpha up to which surfaces are polished."""
+NARROW = 0.1
+"""Sine of half the angle up to which lights are small (``kernels.small_lights_device.SMALL``)."""
 LEAST_FILTER = 1e-3
 """Filters narrower than so much of a pixel leave no room for samples near highlights."""
 Answer = tuple[bool, str, tuple[str, ...]]
@@ -224,6 +229,34 @@ def _closed_form(f: Facts) -> Answer:
     return _answer(found, "integrated along the mirror cones of scratches", "no scratch reflects a light with extent")
 
 
+def _small_lights(f: Facts) -> Answer:
+    if not f.tables or not f.settings.effects.get("lights.closedForm", True):
+        return False, "no scratch reflects a light with extent in closed form", ()
+    low, high = f.scene.bounds()
+    found = [light.path for light in f.scene.lights if not _small(light) and _narrow(light, low, high)]
+    return _answer(found, "rarely on a scratch's cone: all layers are asked for them", "no light is small")
+
+
+def _reach(light: Light) -> float:
+    """Radius of a ball about a light's center that holds it [m]; 0 for domes and meshes."""
+    if isinstance(light, SphereLight):
+        return light.radius
+    if isinstance(light, RectLight | DiskLight):
+        return float(np.linalg.norm(light.ex) + np.linalg.norm(light.ey))
+    if isinstance(light, CylinderLight):
+        return light.radius + float(np.linalg.norm(light.axis))
+    return 0.0
+
+
+def _narrow(light: Light, low: np.ndarray, high: np.ndarray) -> bool:
+    """Whether a light with extent is small seen from somewhere in a box."""
+    if isinstance(light, DistantLight):
+        return 0.5 * light.angle < NARROW
+    reach, center = _reach(light), getattr(light, "center", np.zeros(3))
+    corner = np.maximum(np.abs(low - center), np.abs(high - center))
+    return 0.0 < reach < NARROW * float(np.linalg.norm(corner))
+
+
 def _sample_lights(f: Facts) -> Answer:
     return _answer(sampled_lights(f), "scratches draw from these lights, too", "no light left to draw from")
 
@@ -311,6 +344,7 @@ EFFECTS: dict[str, Callable[[Facts], Answer]] = {
     ),
     **{f"lights.{model.name}": _light(model.name, record) for record, model in MODELS.items()},
     "lights.closedForm": _closed_form,
+    "lights.small": _small_lights,
     "lights.sampleLights": _sample_lights,
     "lights.sampleCones": _sample_cones,
     "lights.links": _links,

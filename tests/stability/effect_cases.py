@@ -44,6 +44,7 @@ LAMP = RectLight(
     path="/lamp", radiance=(9, 7, 5), center=(0, 3, -3), ex=(0.5, 0, -0.5), ey=(0, 0.7, 0), normal=(0, -0.8, -0.6)
 )
 SUN = DistantLight(path="/sun", radiance=(2, 2, 2), direction=(0.3, -0.6, -0.74))
+BULB = SphereLight(path="/bulb", radiance=(9, 9, 9), center=(0, 3, -4), radius=0.1)
 PIXELS = Texture("/pixels", np.random.default_rng(1).random((8, 8, 4)).astype(np.float32))
 READ = TextureInput(texture=0)
 BUMPS = TextureInput(texture=0, scale=(2, 2, 2, 1), bias=(-1, -1, -1, 0))
@@ -228,6 +229,7 @@ FIELDS = {
     "lights.dome": "lights",
     "lights.mesh": "lights mesh_lights",
     "lights.closedForm": "lights closed_form",
+    "lights.small": "small_lights",
     "lights.sampleLights": "sample_lights",
     "lights.sampleCones": "sample_cones",
     "lights.links": "light_links",
@@ -330,6 +332,7 @@ CASES: dict[str, Case] = {
     "lights.dome": Case(lit_by(LAMP), world(lights=[LAMP]), where="light", grows=True),
     "lights.mesh": Case(lit_by(GLOWING), lit_by(), where="light", grows=True),
     "lights.closedForm": Case(SCRATCHED, world(scratched(), [SUN]), where="light", grows=True),
+    "lights.small": Case(world(scratched(), [BULB]), world(scratched(), [replace(BULB, radius=0.9)]), where="light"),
     "lights.sampleLights": force("lights.sampleLights", SCRATCHED),
     "lights.sampleCones": force("lights.sampleCones", SCRATCHED),
     "lights.links": Case(world(lights=[LAMP, replace(scenes.dome(0.3), linked=frozenset({1}))]), world(), where="left"),
