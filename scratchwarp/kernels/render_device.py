@@ -224,21 +224,9 @@ def make_kernel(key: KernelKey):
                                     if wp.static(not key.orthographic):
                                         closeness = 1.0 / wp.max(traveled, 1.0e-20)
                                     sparkle = glints(
-                                        scratches.glints,
-                                        lights,
-                                        g,
-                                        arrays,
-                                        s,
-                                        frame,
-                                        p,
-                                        wo,
-                                        step_x,
-                                        step_y,
-                                        closeness,
-                                        index,
-                                        pair + wp.static(OWN_PAIRS),
-                                        seed,
-                                    )
+                                        scratches.glints, lights, g, arrays, s, frame, p, wo, step_x, step_y,
+                                        closeness, index, pair + wp.static(OWN_PAIRS), seed,
+                                    )  # fmt: skip
                                     diffracted = wp.cw_mul(throughput, sparkle.radiance)
                                     if wp.static(key.opacity):
                                         diffracted = diffracted * ((1.0 - through) / wp.max(1.0 - passing, 1.0e-6))
@@ -301,19 +289,9 @@ def make_kernel(key: KernelKey):
                             instance = s.instance
                             if wp.static(not key.grooves) or grooved == 0:
                                 received = direct(
-                                    g,
-                                    arrays,
-                                    scratches.tables,
-                                    scratches.responses,
-                                    lights,
-                                    p,
-                                    s.ng,
-                                    instance,
-                                    lobe,
-                                    index,
-                                    pair + wp.static(OWN_PAIRS),
-                                    seed,
-                                )
+                                    g, arrays, scratches.tables, scratches.responses, lights, p, s.ng, instance,
+                                    lobe, index, pair + wp.static(OWN_PAIRS), seed,
+                                )  # fmt: skip
                                 out = scatter(scratches.tables, scratches.responses, lobe, s, u_base, u_more[1])
                             if wp.static(small is not None):
                                 arriving = throughput

@@ -119,7 +119,7 @@ def make_small_lights(key: KernelKey, models: Any, linked: Any, arrives: Any) ->
                         if arcs.count > 0:
                             table = scratches.layers[number].table
                             if wp.static(key.variation):
-                                bits = pcg_hash(random_bits(phase) ^ wp.uint32(0x5E3779B9))
+                                bits = pcg_hash(pcg_hash(random_bits(phase)))
                                 table = varied_table(table, scratches.variations[number], hit, bits)
                             phi_o = wp.atan2(wp.dot(wo, f.y), wp.max(wp.dot(wo, f.n), 0.0))
                             rows = cone_rows(scratches.tables, table, phi_o, sin_theta)
@@ -194,11 +194,14 @@ def make_small_lights(key: KernelKey, models: Any, linked: Any, arrives: Any) ->
         f = frame_with_tangent(n, crossed.along)
         sin_theta = -wp.clamp(wp.dot(wo, f.x), -1.0, 1.0)
         value = brought(g, arrays, scratches.tables, lights, light, f, sin_theta, ng, wo, p, crossed, u)
-        value = value * (crossed.alpha * (crossed.total / crossed.own))
+        scale = crossed.alpha * (crossed.total / crossed.own)
         if wp.static(key.light_multipliers):
-            value = value * light.specular
+            scale *= light.specular
+        tint = wp.vec3(1.0, 1.0, 1.0)
         if wp.static(key.tints):
-            value = wp.cw_mul(value, lent_tint(f0, scratches.layers[crossed.layer].f0, sin_theta))
-        return wp.vec4(value[0], value[1], value[2], float(light.shadow))
+            tint = lent_tint(f0, scratches.layers[crossed.layer].f0, sin_theta)
+        return wp.vec4(
+            scale * tint[0] * value[0], scale * tint[1] * value[1], scale * tint[2] * value[2], float(light.shadow)
+        )
 
     return consider, shine

@@ -52,12 +52,13 @@ def test_the_same_mean_with_less_noise():
     assert (np.abs(off) < 4.0 * sigma).all(), (off, sigma)
     assert (sigma < 0.05 * means[0].mean(axis=0)).all()
     noise = [f.var(axis=0, ddof=1).mean() for f in (found, drawn)]
-    assert noise[0] < 0.6 * noise[1], noise
+    assert noise[0] < 0.8 * noise[1], noise
 
 
 def test_parts_add_up():
     film = scenes.shoot(world(LAMPS), {"lights.small": True}, width=12, height=12, spp=16)
-    assert np.allclose(film["base"] + film["scratches"], film["color"], rtol=1e-4, atol=1e-4)
+    sky = film["color"] - film["base"] - film["scratches"]
+    assert (sky > -1e-4).all() and (sky < 0.1001).all() and np.abs(sky[6, 6]).max() < 1e-4
 
 
 @pytest.mark.parametrize(("radius", "on"), [(0.0, False), (0.1, True), (3.0, False)])
