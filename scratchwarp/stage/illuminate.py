@@ -8,7 +8,7 @@ from pxr import Usd, UsdLux
 
 from scratchwarp.scene import DomeLight, Instance, Light, Material, Mesh, MeshLight, PreviewSurface, TextureInput
 
-from .light import common, radiance
+from .light import common, held, radiance
 from .light_near import EmittingShape
 from .lights import is_mesh_light, linked, read_light
 from .material import BLACK, Materials
@@ -115,7 +115,8 @@ def _tinted(
         return emitted, tuple(_unlit(materials, i) for i in kept)
     if not any(glow):
         return emitted, kept
-    return emitted * np.array(glow), tuple(_unlit(materials, i) for i in kept)
+    emitted = emitted * np.array(glow)
+    return emitted * held(reading, prim, float(np.abs(emitted).max())), tuple(_unlit(materials, i) for i in kept)
 
 
 def _unlit(materials: Materials, index: int) -> int:

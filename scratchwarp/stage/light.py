@@ -13,6 +13,7 @@ from scratchwarp.scene import Shaping
 
 from .color import color
 from .reading import Reading
+from .texture import Textures
 
 _WHITE_KELVIN = 6500.0
 _MOST = 1.0e16  # images hold squares of radiances in float32
@@ -32,12 +33,22 @@ def radiance(reading: Reading, prim: Usd.Prim, size_factor: float) -> np.ndarray
     tint = light_color(reading, prim, "inputs:color", (1.0, 1.0, 1.0))
     if reading.value(prim, "inputs:enableColorTemperature", False):
         tint = tint * temperature_rgb(reading.number(prim, "inputs:colorTemperature", _WHITE_KELVIN))
-    emitted = scale * tint
-    largest = float(np.abs(emitted).max())
-    if largest > _MOST:
-        reading.warn(prim.GetPath(), f"its radiance is {largest:.3g}, more than images hold; {_MOST:g} is used")
-        emitted = emitted * (_MOST / largest)
-    return emitted
+    return scale * tint * held(reading, prim, float(np.abs(scale * tint).max()))
+
+
+def held(reading: Reading, prim: Usd.Prim, largest: float) -> float:
+    """Factor, at most 1, that makes of the ``largest`` radiance that a prim emits one whose square images hold."""
+    if largest <= _MOST:
+        return 1.0
+    reading.warn(prim.GetPath(), f"its radiance is {largest:.3g}, more than images hold; {_MOST:g} is used")
+    return _MOST / largest
+
+
+def through(reading: Reading, prim: Usd.Prim, emitted: np.ndarray, textures: Textures, texture: int) -> np.ndarray:
+    """Radiance of a light with a texture (-1: none), whose texels multiply it, as far as images hold both."""
+    if texture < 0:
+        return emitted
+    return emitted * held(reading, prim, float(emitted.max()) * float(textures.records[texture].pixels.max()))
 
 
 def light_color(reading: Reading, prim: Usd.Prim, name: str, otherwise: tuple[float, float, float]) -> np.ndarray:

@@ -5,7 +5,7 @@ from pxr import Usd, UsdGeom
 
 from scratchwarp.scene import DistantLight, DomeLight, Light
 
-from .light import common, radiance
+from .light import common, radiance, through
 from .reading import Reading
 from .texture import Textures
 
@@ -53,7 +53,8 @@ def dome(reading: Reading, prim: Usd.Prim, metric: np.ndarray, textures: Texture
             reading.warn(prim.GetPath(), f"inputs:texture:format {layout!r} is not honoured; the dome shines evenly")
     if prim.GetRelationship("portals").GetForwardedTargets():
         reading.warn(prim.GetPath(), "portals are not honoured")
-    return DomeLight(**common(reading, prim), radiance=radiance(reading, prim, 1.0), rotation=rotation, texture=texture)
+    emitted = through(reading, prim, radiance(reading, prim, 1.0), textures, texture)
+    return DomeLight(**common(reading, prim), radiance=emitted, rotation=rotation, texture=texture)
 
 
 def _rotation(matrix: np.ndarray) -> np.ndarray:

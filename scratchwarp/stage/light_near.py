@@ -8,7 +8,7 @@ from pxr import Usd
 
 from scratchwarp.scene import CylinderLight, DiskLight, Light, Mesh, RectLight, SphereLight
 
-from .light import common, radiance
+from .light import common, radiance, through
 from .light_shape import cylinder_area, cylinder_mesh, ellipsoid_area, sphere_mesh
 from .reading import Reading
 from .texture import Textures
@@ -71,9 +71,10 @@ def rect(reading: Reading, prim: Usd.Prim, metric: np.ndarray, textures: Texture
     if asset and asset.path:
         attribute = prim.GetAttribute("inputs:texture:file")
         texture = textures.index(attribute.GetPath(), asset, attribute.GetColorSpace() or "auto")
+    emitted = radiance(reading, prim, 4 * area / reading.metres**2)
     return RectLight(
         **common(reading, prim, 90.0),
-        radiance=radiance(reading, prim, 4 * area / reading.metres**2),
+        radiance=through(reading, prim, emitted, textures, texture),
         center=metric[:3, 3],
         ex=ex,
         ey=ey,

@@ -1,5 +1,6 @@
 """UsdPreviewSurface networks to PreviewSurface."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -8,6 +9,7 @@ from pxr import Usd, UsdShade
 from scratchwarp.scene import PreviewSurface, TextureInput
 
 from .color import color
+from .light import held
 from .reading import Reading
 from .shader_input import constant, is_output, source_of
 from .texture import Textures
@@ -44,6 +46,7 @@ def read_preview(reading: Reading, prim: Usd.Prim, textures: Textures) -> tuple[
                 reading.warn(prim.GetPath(), f"inputs:{name} reads displayColor; only diffuseColor can")
             continue
         fields[field] = got if isinstance(got, TextureInput) else _rgb(got, default)
+    fields["emissive_color"] = _held(reading, prim, fields.get("emissive_color"), textures)
     for name, (field, number) in _NUMBERS.items():
         got = _value(reading, shader, name, number, textures)
         fields[field] = got if isinstance(got, TextureInput) else _clean(reading, prim, name, got, number)
@@ -104,6 +107,18 @@ def _value(reading: Reading, shader: UsdShade.Shader, name: str, default: Any, t
         return default if got is None else got
     reading.warn(shader.GetPath(), f"inputs:{name} is driven by {kind or source.GetPath()}; its default is used")
     return default
+
+
+def _held(reading: Reading, prim: Usd.Prim, glow: Any, textures: Textures) -> Any:
+    """An emissiveColor that images hold; none is black."""
+    if glow is None:
+        return (0.0, 0.0, 0.0)
+    if not isinstance(glow, TextureInput):
+        factor = held(reading, prim, float(np.abs(glow).max()))
+        return tuple(factor * v for v in glow)
+    texels = float(np.abs(textures.records[glow.texture].pixels).max())
+    factor = held(reading, prim, float(np.abs(glow.scale).max()) * texels + float(np.abs(glow.bias).max()))
+    return replace(glow, scale=factor * glow.scale, bias=factor * glow.bias)
 
 
 def _constant(reading: Reading, shader: UsdShade.Shader, name: str, default: float, textures: Textures) -> float:

@@ -27,6 +27,7 @@ ONCE = {
     3385: "the file of a texture was a string",
     3442: "the file of a light was true or false",
     3887: "a mesh's counts of corners were a file",
+    4624: "a surface that glowed at 3e38 lit another one",
 }
 
 
