@@ -33,8 +33,8 @@ DEAR = 0.12
 LATE = 0.08
 """Share of a budget by which the reference may be late, without which there is no report at all. A setting is given up
 at half of that."""
-REPORT = (1.0, 0.02)
-"""Seconds, and a share of the budget, that are kept for writing the report."""
+REPORT = (1.5, 0.03)
+"""Seconds, and a share of the budget, that are kept for starting the program and writing the report."""
 
 
 def sweep(
