@@ -244,7 +244,8 @@ def pack(
     for (m, k, v), number in numbers.items():
         w = plan.waves[m]
         assert w is not None
-        own = replace(w.layers[k], outline=w.layers[k].outlines[v], others=())
+        cut = w.layers[k].outlines[v] if plan.on("diffraction.outlines") else None
+        own = replace(w.layers[k], outline=cut, others=())
         row: Any = WaveLayer()
         row.wave, row.reflect, row.per_wavelength = int(which[m]), number, int(own.index is not None)
         row.roughness = w.wave.roughness
