@@ -1,6 +1,6 @@
 """Layers that are laid out groove by groove -> device arrays: one pattern and grid for each material and surface."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -170,6 +170,8 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
     for m, groove in enumerate(plan.grooves):
         if groove is None:
             continue
+        if not key.groove_tapers:
+            groove = _even(groove)
         numbers = []
         for own in groove.layers:
             numbers.append(len(bases) if own.own is not None else -1)
@@ -186,7 +188,8 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
                     asked = (*asked, float(i))  # they lie where this surface is
                 if asked not in known:
                     sets = [all_in_uv(own, shape.mesh, uv, faces, scales[i]) for own in sets]
-                    known[asked] = _pattern(groove, numbers, (low, high, scales[i], hand), sets, rule, joined)
+                    box = low, high, scales[i], hand
+                    known[asked] = _pattern(groove, numbers, box, sets, rule, joined, key.groove_tapers)
                 of_face[faces] = known[asked]
     arrays.of_face = wp.array(of_face, dtype=int, device=device)
     taken = joined.pack(arrays, device) if joined.records else {}
@@ -197,13 +200,20 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
     return PackedGrooves(arrays, taken)
 
 
+def _even(groove: GroovePlan) -> GroovePlan:
+    """The same with sizes that differ from groove to groove alone."""
+    layers = tuple(replace(own, layer=replace(own.layer, variation_length=0.0)) for own in groove.layers)
+    return replace(groove, layers=layers)
+
+
 def _pattern(
     groove: GroovePlan, numbers: list[int], box: tuple[Array, Array, Array, float], curves: list[list[Curves]],
-    rule: str, joined: _Joined,
+    rule: str, joined: _Joined, tapers: bool,
 ) -> int:  # fmt: skip
     """Number of the pattern of a material over a part of a surface, -1 where it has no groove.
 
-    ``box``: uv from and to, micrometres a unit of u and of v, -1 for a mirrored mapping; ``rule``: for cells.
+    ``box``: uv from and to, micrometres a unit of u and of v, -1 for a mirrored mapping; ``rule``: for cells;
+    ``tapers``: sizes along a path count.
     """
     low, high, scale, hand = box
     paths: list[Path] = []
@@ -236,7 +246,7 @@ def _pattern(
                 "set its model to table, or make them longer or wider"
             )
     ends = [dict(plan.layer.extra).get("ends", "cap") for plan in groove.layers]
-    scales = [path.scales for path in paths]
+    scales = [path.scales if tapers else None for path in paths]
     shape = "mitre" if "mitre" in ends else "cap"
     pattern = Pattern([path.points for path in paths], sections, shape, scales, steps, rings)
     if not pattern.size:
