@@ -170,7 +170,7 @@ def pack(scene: Scene, plan: EffectPlan, key: KernelKey, shape: PackedGeometry, 
     for m, groove in enumerate(plan.grooves):
         if groove is None:
             continue
-        if not key.groove_tapers:
+        if groove.tapers and not key.groove_tapers:
             groove = _even(groove)
         numbers = []
         for own in groove.layers:
