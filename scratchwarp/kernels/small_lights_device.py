@@ -15,6 +15,7 @@ from ..lights.arcs_device import above_facet
 from ..lights.light_device import Light
 from ..optics.frames_device import Frame, frame_with_tangent
 from ..optics.hash_device import pcg_hash, unit_float
+from ..plan.effects import NARROW
 from ..reflectance.cone_sums_device import cone_rows, value_in
 from ..reflectance.profile_table_device import TableArrays, cone_direction, phi_bin
 from ..scratches.layer_device import LayerHit, random_bits
@@ -28,7 +29,7 @@ from .world_device import LightSet, ScratchSet
 
 wp.set_module_options({"enable_backward": False})
 
-SMALL = wp.constant(0.1)
+SMALL = wp.constant(NARROW)
 """Sine of half the angle up to which lights are small."""
 ASIDE = wp.constant(wp.uint32(0x2C9277B5))  # of the seed of what is drawn here
 

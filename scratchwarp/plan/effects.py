@@ -35,7 +35,7 @@ from .wave_effects import WAVE_EFFECTS
 MOST_SMOOTH = 0.03
 """GGX alpha up to which surfaces are polished."""
 NARROW = 0.1
-"""Sine of half the angle up to which lights are small (``kernels.small_lights_device.SMALL``)."""
+"""Sine of half the angle up to which lights are small."""
 LEAST_FILTER = 1e-3
 """Filters narrower than so much of a pixel leave no room for samples near highlights."""
 Answer = tuple[bool, str, tuple[str, ...]]

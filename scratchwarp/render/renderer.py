@@ -139,12 +139,12 @@ def render(
                     snapshot(film(canvas.samples_of_pixels(), float("inf"), time.perf_counter()))
 
         progress(canvas.done, canvas.pixels * samples, "trace")
-        if jobs := canvas.jobs(samples):
-            trace(jobs, done)
+        trace(canvas.jobs(samples), done)
 
     begun = int(canvas.samples.max(initial=0))
     try:
-        for count in [begun, *(n for n in (begins(spp) if limit is not None else [spp]) if n > begun)]:
+        first = begins(spp) if limit is not None else [spp]
+        for count in sorted({n for n in (begun, *first) if n >= max(begun, 1)}):
             to(count)
         samples, error = until(limit, max(spp, begun), lambda: canvas.sums, canvas.passes, to, most)
         error += left
